@@ -1,0 +1,31 @@
+//! Quad meshes, directions and the mathematics of architectural tessellation.
+//!
+//! Everything here works on [`Mesh`] and plain arrays; it knows no graph, no
+//! file and no text format. Lengths are metres, angles radians, z is up, and
+//! all arithmetic is `f64`. Results do not depend on the number of threads or
+//! on the platform.
+
+pub mod buffer;
+pub mod digest;
+pub mod directions;
+mod error;
+mod field;
+pub mod math;
+mod mesh;
+mod monitor;
+mod naming;
+pub mod normals;
+pub mod parallel;
+mod random;
+mod rebuild;
+mod topology;
+
+pub use directions::{DirectionSource, Directions};
+pub use error::{GeometryError, list_ids};
+pub use field::{Amount, Field, Quantity};
+pub use glam;
+pub use mesh::{Attribute, AttributeValues, Domain, Labels, Material, Mesh, NO_LABEL, Triangles};
+pub use monitor::{Monitor, Unmonitored};
+pub use naming::faces_named;
+pub use topology::{Adjacency, NO_EDGE, Topology};
+

@@ -1,0 +1,114 @@
+//! The one triangulation of a mesh's polygons.
+
+use glam::DVec3;
+
+use super::Mesh;
+use crate::normals::newell;
+
+/// Triangles of all faces, and where each face's triangles start.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Triangles {
+    /// Corner numbers (indices into [`crate::Topology::corners`]) of each triangle.
+    pub corners: Vec<[u32; 3]>,
+    /// The face each triangle belongs to; ascending.
+    pub faces: Vec<u32>,
+}
+
+impl Mesh {
+    /// The surface of the mesh as triangles: of each face the fan from its
+    /// first corner, or ear clipping where that fan is not simple.
+    ///
+    /// A non-planar polygon has no one surface; this is the one that distances,
+    /// areas, intersections and file writers of this crate all mean. A face of
+    /// n corners gives n - 2 triangles. Cost: O(corners), and O(n²) for a
+    /// concave face of n corners.
+    pub fn triangles(&self) -> Triangles {
+        let count = self.corner_count().saturating_sub(2 * self.face_count());
+        let mut out = Triangles {
+            corners: Vec::with_capacity(count),
+            faces: Vec::with_capacity(count),
+        };
+        let mut ears = Vec::new();
+        for face in 0..self.face_count() {
+            let start = self.topology().corner_range(face).start as u32;
+            let vertices = self.face(face);
+            let fan = |k: usize| [start, start + k as u32, start + k as u32 + 1];
+            if vertices.len() == 3 {
+                out.corners.push(fan(1));
+            } else {
+                let place = |k: usize| self.positions()[vertices[k] as usize];
+                if is_simple_fan(vertices.len(), place) {
+                    out.corners.extend((1..vertices.len() - 1).map(fan));
+                } else {
+                    clip_ears(vertices.len(), place, &mut ears);
+                    out.corners
+                        .extend(ears.iter().map(|ear| ear.map(|k| start + k)));
+                }
+            }
+            out.faces.resize(out.corners.len(), face as u32);
+        }
+        out
+    }
+
+    /// The vertices of each triangle of [`Mesh::triangles`].
+    pub fn triangle_vertices(&self, triangles: &Triangles) -> Vec<[u32; 3]> {
+        let corners = self.topology().corners();
+        triangles
+            .corners
+            .iter()
+            .map(|triangle| triangle.map(|c| corners[c as usize]))
+            .collect()
+    }
+}
+
+fn normal_of(count: usize, place: impl Fn(usize) -> DVec3) -> DVec3 {
+    newell((0..count).map(place))
+}
+
+/// Whether no triangle of the fan from corner 0 turns against the polygon's normal.
+fn is_simple_fan(count: usize, place: impl Fn(usize) -> DVec3) -> bool {
+    let normal = normal_of(count, &place);
+    (1..count - 1).all(|k| {
+        let cross = (place(k) - place(0)).cross(place(k + 1) - place(0));
+        cross.dot(normal) >= 0.0
+    })
+}
+
+/// Ear clipping in the plane of the polygon's Newell normal; `ears` receives
+/// corner triples. Always yields `count - 2` triangles: when rounding or a
+/// self-crossing outline leaves no ear, the corner with the largest turn is cut.
+fn clip_ears(count: usize, place: impl Fn(usize) -> DVec3, ears: &mut Vec<[u32; 3]>) {
+    let normal = normal_of(count, &place);
+    ears.clear();
+    let mut ring: Vec<u32> = (0..count as u32).collect();
+    let at = |corner: u32| place(corner as usize);
+    let turn = |a: u32, b: u32, c: u32| (at(b) - at(a)).cross(at(c) - at(b)).dot(normal);
+    while ring.len() > 3 {
+        let n = ring.len();
+        let triple = |k: usize| (ring[(k + n - 1) % n], ring[k], ring[(k + 1) % n]);
+        let is_ear = |&k: &usize| {
+            let (a, b, c) = triple(k);
+            turn(a, b, c) > 0.0
+                && ring
+                    .iter()
+                    .filter(|&&p| p != a && p != b && p != c)
+                    .all(|&p| {
+                        // Outside or on the border of the candidate triangle.
+                        turn(a, b, p) <= 0.0 || turn(b, c, p) <= 0.0 || turn(c, a, p) <= 0.0
+                    })
+        };
+        let widest = || {
+            let by_turn = |&i: &usize, &j: &usize| {
+                let (a, b) = (triple(i), triple(j));
+                turn(a.0, a.1, a.2).total_cmp(&turn(b.0, b.1, b.2))
+            };
+            (0..n).max_by(by_turn).unwrap_or(0)
+        };
+        // Corner 0 is tried last, so that fans from it are kept where possible.
+        let k = (1..n).chain([0]).find(is_ear).unwrap_or_else(widest);
+        let (a, b, c) = triple(k);
+        ears.push([a, b, c]);
+        ring.remove(k);
+    }
+    ears.push([ring[0], ring[1], ring[2]]);
+}
