@@ -18,6 +18,7 @@ pub mod normals;
 pub mod parallel;
 mod random;
 mod rebuild;
+pub mod subdivide;
 mod topology;
 
 pub use directions::{DirectionSource, Directions};
