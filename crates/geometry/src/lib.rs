@@ -22,6 +22,7 @@ pub mod primitives;
 mod random;
 mod rebuild;
 pub mod subdivide;
+pub mod surface;
 mod topology;
 pub mod transform;
 
