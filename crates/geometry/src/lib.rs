@@ -6,6 +6,7 @@
 //! on the platform.
 
 pub mod buffer;
+pub mod diffuse;
 pub mod digest;
 pub mod directions;
 mod displace;
@@ -23,6 +24,7 @@ mod random;
 mod rebuild;
 pub mod subdivide;
 pub mod surface;
+pub mod target;
 mod topology;
 pub mod transform;
 
