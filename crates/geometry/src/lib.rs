@@ -6,6 +6,7 @@
 //! on the platform.
 
 pub mod buffer;
+pub mod compensate;
 pub mod diffuse;
 pub mod digest;
 pub mod directions;
