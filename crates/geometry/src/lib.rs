@@ -5,6 +5,7 @@
 //! all arithmetic is `f64`. Results do not depend on the number of threads or
 //! on the platform.
 
+mod array;
 pub mod buffer;
 pub mod compensate;
 pub mod diffuse;
@@ -13,12 +14,15 @@ pub mod directions;
 mod displace;
 mod error;
 mod field;
+mod fit;
 mod join;
 pub mod math;
 mod mesh;
 mod monitor;
 mod naming;
 pub mod normals;
+mod normals_uv;
+mod offset;
 pub mod parallel;
 pub mod primitives;
 mod random;
@@ -28,15 +32,33 @@ pub mod surface;
 pub mod target;
 mod topology;
 pub mod transform;
+mod weld;
 
+pub use array::{
+    ArrayCounts, ArrayDomain, ArrayOptions, ArrayPoint, Arrayed, BASE_FACE, COMPONENT,
+    COMPONENT_FACE, Displace, Height, Interpolation, Join, JoinReport, NO_COMPONENT, PANEL,
+    PatchGrids, PerVertexOptions, PerVertexReport, Straight, array_compensated, array_components,
+    array_components_with, array_counts, border_faces, border_patch_turns, border_patches,
+    border_turns, choose_along, choose_at_border, choose_by_index, choose_by_material,
+    choose_random,
+};
 pub use directions::{DirectionSource, Directions};
 pub use displace::displace_vertices;
 pub use error::{GeometryError, list_ids};
 pub use field::{Amount, Field, Quantity};
+pub use fit::{
+    Anchor, Beyond, BoxOutliers, Fit, FitOptions, Frame, box_outliers, component_frame,
+    fit_component,
+};
 pub use glam;
 pub use join::join;
 pub use mesh::{Attribute, AttributeValues, Domain, Labels, Material, Mesh, NO_LABEL, Triangles};
 pub use monitor::{Monitor, Unmonitored};
 pub use naming::faces_named;
+pub use normals_uv::{
+    NORMAL_UV, NormalUv, NormalUvAxes, NormalUvSource, Part, evaluate_normals_uv,
+};
+pub use offset::{PART, ShellPart, offset_mesh};
 pub use topology::{Adjacency, NO_EDGE, Topology};
+pub use weld::{Welded, weld_vertices};
 

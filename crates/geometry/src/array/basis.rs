@@ -1,0 +1,123 @@
+//! Weights of grid vertices at each component vertex.
+
+use glam::DVec2;
+
+use super::Piece;
+
+/// Four grid vertices and their bilinear weights.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Weights {
+    /// Places in the grid: (i, j), (i+1, j), (i, j+1), (i+1, j+1).
+    pub(super) at: [u32; 4],
+    pub(super) weight: [f64; 4],
+}
+
+impl Weights {
+    /// Bilinear weights at (u, v) of a grid of side n: from the small face that
+    /// holds the place, the last one for u = 1 and for all beyond the grid.
+    pub(super) fn new(uv: DVec2, side: u32) -> Self {
+        let n = f64::from(side);
+        let cell = |x: f64| (x * n).floor().clamp(0.0, n - 1.0);
+        let (i, j) = (cell(uv.x), cell(uv.y));
+        let (f, g) = (uv.x * n - i, uv.y * n - j);
+        let first = j as u32 * (side + 1) + i as u32;
+        Self {
+            at: [first, first + 1, first + side + 1, first + side + 2],
+            weight: [(1.0 - f) * (1.0 - g), f * (1.0 - g), (1.0 - f) * g, f * g],
+        }
+    }
+
+    /// Weighted sum of the grid's values.
+    #[inline]
+    pub(super) fn sum<T>(&self, values: &[T]) -> T
+    where
+        T: Copy + std::ops::Add<Output = T> + std::ops::Mul<f64, Output = T>,
+    {
+        let [a, b, c, d] = self.at.map(|at| values[at as usize]);
+        let [p, q, r, s] = self.weight;
+        (a * p + b * q) + (c * r + d * s)
+    }
+
+    /// The grid vertex of the greatest weight, the first of equals.
+    pub(super) fn nearest(&self) -> u32 {
+        let mut best = 0;
+        for k in 1..4 {
+            if self.weight[k] > self.weight[best] {
+                best = k;
+            }
+        }
+        self.at[best]
+    }
+}
+
+/// A component vertex over a grid of known side.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct BasisPoint {
+    /// Weights at (u, v).
+    pub(super) place: Weights,
+    /// Weights at (u', v').
+    pub(super) direction: Weights,
+    pub(super) uv: DVec2,
+    /// w, times everything that is constant over the array.
+    pub(super) height: f64,
+}
+
+/// Basis points of all vertices of a component over grids of one side.
+pub(super) struct Basis {
+    pub(super) component: u32,
+    pub(super) side: u32,
+    pub(super) points: Vec<BasisPoint>,
+}
+
+impl Basis {
+    pub(super) fn new(pieces: &[Piece], component: u32, side: u32, factor: f64) -> Self {
+        let piece = &pieces[component as usize];
+        let vertices = piece.mesh.positions().iter().zip(&piece.normal_uv);
+        let points = vertices.map(|(p, &normal_uv)| BasisPoint {
+            place: Weights::new(p.truncate(), side),
+            direction: Weights::new(normal_uv, side),
+            uv: p.truncate(),
+            height: p.z * factor,
+        });
+        Self {
+            component,
+            side,
+            points: points.collect(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn weights_reproduce_the_place(u in -1.0..2.0f64, v in -1.0..2.0f64, side in 1u32..9) {
+            let weights = Weights::new(DVec2::new(u, v), side);
+            let grid: Vec<DVec2> = (0..=side)
+                .flat_map(|j| (0..=side).map(move |i| DVec2::new(i.into(), j.into())))
+                .map(|place| place / f64::from(side))
+                .collect();
+            prop_assert!((weights.sum(&grid) - DVec2::new(u, v)).length() < 1e-12);
+            prop_assert!((weights.weight.iter().sum::<f64>() - 1.0).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn grid_vertices_have_all_the_weight() {
+        for side in 1..=8u32 {
+            for (i, j) in (0..=side).flat_map(|j| (0..=side).map(move |i| (i, j))) {
+                // Sides that are powers of two divide exactly.
+                if side.is_power_of_two() {
+                    let n = f64::from(side);
+                    let uv = DVec2::new(f64::from(i) / n, f64::from(j) / n);
+                    let weights = Weights::new(uv, side);
+                    assert_eq!(weights.nearest(), j * (side + 1) + i);
+                    assert!(weights.weight.contains(&1.0));
+                }
+            }
+        }
+    }
+}

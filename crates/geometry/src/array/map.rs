@@ -1,0 +1,323 @@
+//! The mapping itself: X = P(u, v) + w s k D(u', v').
+
+use glam::{DVec2, DVec3};
+
+use super::basis::{Basis, BasisPoint};
+use super::layout::Layout;
+use super::{ArrayOptions, Interpolation, Piece, is_relative};
+use crate::normals::{NormalWeights, face_area_vectors, vertex_normals};
+use crate::{Amount, Directions, Domain, GeometryError, Mesh, Monitor, math, parallel};
+
+/// A point of the array about to be displaced.
+#[derive(Debug, Clone, Copy)]
+pub struct ArrayPoint {
+    /// Its vertex in the array, before neighbours are joined.
+    pub vertex: u32,
+    /// The base face (or parent) it is over.
+    pub face: u32,
+    /// Its place on that face.
+    pub uv: DVec2,
+    /// Signed height w s k in metres: how far it should be from the surface.
+    pub height: f64,
+    /// P(u, v), on the base surface.
+    pub position: DVec3,
+    /// Unit normal of the base at (u, v), interpolated from its vertices; zero
+    /// unless the displacement compensates.
+    pub normal: DVec3,
+    /// D(u', v') of its side; of unit length for normals, zero where there is none.
+    pub direction: DVec3,
+}
+
+/// Decides how far a point of the array moves along its direction.
+pub trait Displace: Sync {
+    /// The signed height h to use: the point goes to `position + h direction`.
+    ///
+    /// Called once for every point, from many threads in no particular order;
+    /// the answer must depend on `point` alone.
+    fn height(&self, point: &ArrayPoint) -> f64;
+
+    /// Whether this makes up for slanted directions: then it gets normals, and
+    /// directions which are compensated already must not be used.
+    fn compensates(&self) -> bool {
+        true
+    }
+}
+
+/// Moves every point by its height along the direction as it is.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Straight;
+
+impl Displace for Straight {
+    #[inline]
+    fn height(&self, point: &ArrayPoint) -> f64 {
+        point.height
+    }
+
+    fn compensates(&self) -> bool {
+        false
+    }
+}
+
+/// Base and components, prepared for the loop over all output vertices.
+pub(super) struct Map<'a> {
+    base: &'a Mesh,
+    layout: &'a Layout<'a>,
+    pub(super) bases: Vec<Basis>,
+    /// The basis of each placement.
+    pub(super) basis_of: Vec<u32>,
+    outward: Vectors,
+    /// `None` where both sides are the same.
+    inward: Option<Vectors>,
+    /// sqrt(A) per base vertex for relative heights.
+    size: Option<Vec<f64>>,
+    scale: Option<&'a Amount>,
+    /// Vertex normals, where the displacement wants them.
+    normals: Option<Vec<DVec3>>,
+}
+
+/// Directions in the form that is interpolated.
+struct Vectors {
+    /// Unit directions, or the vectors themselves without `lengths`.
+    directions: Vec<DVec3>,
+    lengths: Option<Vec<f64>>,
+}
+
+impl Vectors {
+    fn new(vectors: &[DVec3], interpolation: Interpolation) -> Self {
+        match interpolation {
+            Interpolation::Linear => Self {
+                directions: vectors.to_vec(),
+                lengths: None,
+            },
+            Interpolation::Unit => Self {
+                directions: vectors.iter().copied().map(math::unit_or_zero).collect(),
+                lengths: Some(vectors.iter().map(|vector| vector.length()).collect()),
+            },
+        }
+    }
+}
+
+/// Base values under one placement, gathered from the mesh.
+#[derive(Default)]
+struct Patch {
+    grid: Vec<u32>,
+    positions: Vec<DVec3>,
+    outward: PatchVectors,
+    inward: PatchVectors,
+    size: Vec<f64>,
+    scale: Vec<f64>,
+    normals: Vec<DVec3>,
+}
+
+#[derive(Default)]
+struct PatchVectors {
+    directions: Vec<DVec3>,
+    lengths: Vec<f64>,
+}
+
+impl PatchVectors {
+    fn gather(&mut self, grid: &[u32], vectors: &Vectors) {
+        gather(&mut self.directions, grid, &vectors.directions);
+        if let Some(lengths) = &vectors.lengths {
+            gather(&mut self.lengths, grid, lengths);
+        }
+    }
+
+    #[inline]
+    fn at(&self, point: &BasisPoint) -> DVec3 {
+        let sum = point.direction.sum(&self.directions);
+        if self.lengths.is_empty() {
+            return sum;
+        }
+        // Sums of unit vectors: only opposite ones come near zero.
+        let length = sum.length();
+        if length > CANCELLED {
+            sum * (point.direction.sum(&self.lengths) / length)
+        } else {
+            DVec3::ZERO
+        }
+    }
+}
+
+/// Unit directions whose interpolation is shorter have cancelled out.
+const CANCELLED: f64 = 1e-9;
+
+fn gather<T: Copy>(out: &mut Vec<T>, grid: &[u32], values: &[T]) {
+    out.clear();
+    out.extend(grid.iter().map(|&vertex| values[vertex as usize]));
+}
+
+impl<'a> Map<'a> {
+    pub(super) fn new(
+        base: &'a Mesh,
+        directions: &Directions,
+        pieces: &[Piece],
+        layout: &'a Layout<'a>,
+        options: &ArrayOptions<'a>,
+        monitor: &dyn Monitor,
+    ) -> Result<Self, GeometryError> {
+        if let Some(scale) = options.scale {
+            scale.check(base, Domain::Vertex)?;
+            let (low, high) = scale.range();
+            if !(low.is_finite() && high.is_finite()) {
+                return Err(GeometryError::OutOfRange {
+                    what: "the scale",
+                    value: if low.is_finite() { high } else { low },
+                    requirement: "it must be finite",
+                });
+            }
+        }
+        let relative = is_relative(options.height, directions);
+        let size = relative.then(|| vertex_sizes(base, monitor)).transpose()?;
+        let constant = match options.scale {
+            Some(Amount::Constant(scale)) => *scale,
+            _ => 1.0,
+        };
+        let (bases, basis_of) = make_bases(pieces, layout, |component, side| {
+            let of_grid = if relative { f64::from(side) } else { 1.0 };
+            pieces[component as usize].height_scale * of_grid * constant
+        });
+        let vectors = |side: &[DVec3]| Vectors::new(side, options.interpolation);
+        Ok(Self {
+            base,
+            layout,
+            bases,
+            basis_of,
+            outward: vectors(directions.outward()),
+            inward: (!directions.is_symmetric()).then(|| vectors(directions.inward())),
+            size,
+            normals: None,
+            scale: options
+                .scale
+                .filter(|scale| matches!(scale, Amount::Field(_))),
+        })
+    }
+
+    /// The same with normals for displacements that want them.
+    pub(super) fn with_normals(mut self, monitor: &dyn Monitor) -> Result<Self, GeometryError> {
+        let weights = NormalWeights::Angle;
+        self.normals = Some(vertex_normals(self.base, weights, true, monitor)?);
+        Ok(self)
+    }
+
+    /// Positions of all output vertices, before neighbours are joined.
+    pub(super) fn positions<D: Displace + ?Sized>(
+        &self,
+        displace: &D,
+        monitor: &dyn Monitor,
+    ) -> Result<Vec<DVec3>, GeometryError> {
+        let starts = &self.layout.vertex_starts;
+        let count = starts.last().map_or(0, |&count| count as usize);
+        let mut out: Vec<DVec3> = parallel::zeroed(count);
+        parallel::fill_runs(
+            &mut out,
+            starts,
+            monitor,
+            Patch::default,
+            |patch, run, slots| {
+                self.gather(run, patch);
+                let basis = &self.bases[self.basis_of[run] as usize];
+                let face = self.layout.placements[run].cell;
+                for ((slot, point), vertex) in
+                    slots.iter_mut().zip(&basis.points).zip(starts[run]..)
+                {
+                    let mut at = self.point(patch, point);
+                    (at.vertex, at.face) = (vertex, face);
+                    *slot = at.position + at.direction * displace.height(&at);
+                }
+            },
+        )?;
+        Ok(out)
+    }
+
+    fn gather(&self, placement: usize, patch: &mut Patch) {
+        self.layout.grid(placement, &mut patch.grid);
+        gather(&mut patch.positions, &patch.grid, self.base.positions());
+        patch.outward.gather(&patch.grid, &self.outward);
+        if let Some(inward) = &self.inward {
+            patch.inward.gather(&patch.grid, inward);
+        }
+        if let Some(size) = &self.size {
+            gather(&mut patch.size, &patch.grid, size);
+        }
+        if let Some(normals) = &self.normals {
+            gather(&mut patch.normals, &patch.grid, normals);
+        }
+        if let Some(scale) = self.scale {
+            patch.scale.clear();
+            let values = patch.grid.iter().map(|&vertex| scale.at(vertex as usize));
+            patch.scale.extend(values);
+        }
+    }
+
+    #[inline]
+    fn point(&self, patch: &Patch, point: &BasisPoint) -> ArrayPoint {
+        let mut height = point.height;
+        if self.size.is_some() {
+            height *= point.place.sum(&patch.size);
+        }
+        if self.scale.is_some() {
+            height *= point.place.sum(&patch.scale);
+        }
+        let side = if height < 0.0 && self.inward.is_some() {
+            &patch.inward
+        } else {
+            &patch.outward
+        };
+        let normal = if self.normals.is_some() {
+            math::unit_or_zero(point.place.sum(&patch.normals))
+        } else {
+            DVec3::ZERO
+        };
+        ArrayPoint {
+            normal,
+            vertex: 0,
+            face: 0,
+            uv: point.uv,
+            height,
+            position: point.place.sum(&patch.positions),
+            direction: side.at(point),
+        }
+    }
+}
+
+/// One basis for each component and side of grid in use, and which of them
+/// each placement has.
+fn make_bases(
+    pieces: &[Piece],
+    layout: &Layout<'_>,
+    factor: impl Fn(u32, u32) -> f64,
+) -> (Vec<Basis>, Vec<u32>) {
+    let mut bases: Vec<Basis> = Vec::new();
+    let mut basis_of = Vec::with_capacity(layout.placements.len());
+    for (index, placement) in layout.placements.iter().enumerate() {
+        let (component, side) = (placement.component, layout.side(index));
+        let same = |basis: &Basis| (basis.component, basis.side) == (component, side);
+        // Neighbours mostly share their basis, and there are few of them.
+        let last = basis_of
+            .last()
+            .copied()
+            .filter(|&last: &u32| same(&bases[last as usize]));
+        let found = last.or_else(|| bases.iter().position(same).map(|k| k as u32));
+        basis_of.push(found.unwrap_or_else(|| {
+            bases.push(Basis::new(pieces, component, side, factor(component, side)));
+            bases.len() as u32 - 1
+        }));
+    }
+    (bases, basis_of)
+}
+
+/// sqrt(A) per vertex, A the mean area of the faces round it; 0 without faces.
+fn vertex_sizes(base: &Mesh, monitor: &dyn Monitor) -> Result<Vec<f64>, GeometryError> {
+    let areas = face_area_vectors(base, monitor)?;
+    let adjacency = base.topology().adjacency();
+    parallel::map(base.vertex_count(), monitor, |vertex| {
+        let corners = adjacency.vertex_corners(vertex);
+        let area = |&corner: &u32| {
+            // Newell's vector is twice the area long.
+            areas[adjacency.corner_faces()[corner as usize] as usize].length() / 2.0
+        };
+        let sum: f64 = corners.iter().map(area).sum();
+        (sum / corners.len().max(1) as f64).sqrt()
+    })
+}

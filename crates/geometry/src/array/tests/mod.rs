@@ -1,0 +1,4 @@
+mod join;
+mod peer;
+mod per_vertex;
+mod properties;

@@ -1,0 +1,347 @@
+//! Joining vertices: those at the same place, or a given list of pairs.
+
+use glam::DVec3;
+
+use crate::rebuild::{Sources, rebuild, renumber};
+use crate::{GeometryError, Mesh, Monitor, Topology, parallel};
+
+/// A mesh after vertices were joined.
+#[derive(Debug, Clone)]
+pub struct Welded {
+    /// The mesh. Surviving vertices keep their order.
+    pub mesh: Mesh,
+    /// Vertices that were joined to another one.
+    pub joined: usize,
+    /// Faces dropped because fewer than three corners were left of them.
+    pub dropped_faces: usize,
+    /// The old index of each vertex that is left.
+    pub vertex_sources: Vec<u32>,
+}
+
+/// Joins vertices that are at most `distance` (metres) apart.
+///
+/// Vertices form clusters: the transitive closure of all pairs within the
+/// distance, so the result does not depend on the order in which pairs are
+/// found. Each cluster becomes its vertex of lowest index, which keeps its
+/// position and attributes. Distance 0 joins exactly equal positions. Corners
+/// that repeat within a face are dropped, and faces with fewer than three left;
+/// that also removes faces shorter than the distance, so keep it well below the
+/// smallest feature. Cost: O(vertices · log vertices) for positions that are not
+/// crowded far below `distance`.
+///
+/// ```
+/// use tessgraph_geometry::{Mesh, Unmonitored, weld_vertices};
+/// let soup = Mesh::from_faces(
+///     vec![[0., 0., 0.], [1., 0., 0.], [0., 1., 0.], [1., 0., 0.], [1., 1., 0.], [0., 1., 0.]],
+///     &[[0, 1, 2], [3, 4, 5]],
+/// )?;
+/// let welded = weld_vertices(&soup, 0.0, &Unmonitored)?;
+/// assert_eq!((welded.mesh.vertex_count(), welded.joined), (4, 2));
+/// # Ok::<(), tessgraph_geometry::GeometryError>(())
+/// ```
+///
+/// # Errors
+/// [`GeometryError::OutOfRange`] for a distance that is negative or not
+/// finite, [`GeometryError::Cancelled`].
+pub fn weld_vertices(
+    mesh: &Mesh,
+    distance: f64,
+    monitor: &dyn Monitor,
+) -> Result<Welded, GeometryError> {
+    if !(distance >= 0.0 && distance.is_finite()) {
+        return Err(GeometryError::OutOfRange {
+            what: "the distance",
+            value: distance,
+            requirement: "it must be finite and not negative",
+        });
+    }
+    merge_vertices(mesh, &clusters(mesh.positions(), distance), monitor)
+}
+
+/// Joins every vertex to `target[vertex]`, which must be its own target and not
+/// be above it.
+///
+/// # Errors
+/// [`GeometryError::Cancelled`].
+pub(crate) fn merge_vertices(
+    mesh: &Mesh,
+    target: &[u32],
+    monitor: &dyn Monitor,
+) -> Result<Welded, GeometryError> {
+    let survives = parallel::map(target.len(), monitor, |v| target[v] as usize == v)?;
+    let (new, vertices) = renumber(&survives);
+    let new = parallel::map(target.len(), monitor, |v| new[target[v] as usize])?;
+    let renamed = |vertex: u32| new[vertex as usize];
+    let counts = parallel::map(mesh.face_count(), monitor, |face| {
+        let kept = kept_corners(mesh.face(face), renamed).count();
+        if kept < 3 { 0 } else { kept as u32 }
+    })?;
+    let (mut faces, mut offsets) = (Vec::new(), vec![0]);
+    for (&count, face) in counts.iter().zip(0u32..) {
+        if count > 0 {
+            faces.push(face);
+            offsets.push(offsets[offsets.len() - 1] + count);
+        }
+    }
+    let corner_count = offsets[faces.len()] as usize;
+    let run = |out: &mut [u32], of: &(dyn Fn(usize, usize) -> u32 + Sync)| {
+        parallel::fill_runs(
+            out,
+            &offsets,
+            monitor,
+            || (),
+            |(), run, slots| {
+                let face = faces[run] as usize;
+                let kept = kept_corners(mesh.face(face), renamed);
+                for (slot, corner) in slots.iter_mut().zip(kept) {
+                    *slot = of(face, corner);
+                }
+            },
+        )
+    };
+    let mut corners = parallel::zeroed(corner_count);
+    run(&mut corners, &|face, corner| {
+        renamed(mesh.face(face)[corner])
+    })?;
+    // Mostly nothing collapses, and corner values stay where they are.
+    let corner_source = if corner_count == mesh.corner_count() {
+        None
+    } else {
+        let mut source = parallel::zeroed(corner_count);
+        run(&mut source, &|face, corner| {
+            (mesh.topology().corner_range(face).start + corner) as u32
+        })?;
+        Some(source)
+    };
+    let positions = parallel::map(vertices.len(), monitor, |v| {
+        mesh.positions()[vertices[v] as usize]
+    })?;
+    let dropped_faces = mesh.face_count() - faces.len();
+    let sources = Sources {
+        faces: (dropped_faces > 0).then_some(faces),
+        corners: corner_source,
+        vertices: Some(vertices.clone()),
+    };
+    let topology = Topology::new(vertices.len(), offsets, corners)?;
+    Ok(Welded {
+        mesh: rebuild(mesh, positions, topology, &sources)?,
+        joined: mesh.vertex_count() - vertices.len(),
+        dropped_faces,
+        vertex_sources: vertices,
+    })
+}
+
+/// The corners of a face that are left when its vertices are renamed: of
+/// neighbours at one vertex the first, counted from corner 0.
+fn kept_corners(face: &[u32], renamed: impl Fn(u32) -> u32) -> impl Iterator<Item = usize> {
+    let is_kept = move |&corner: &usize| {
+        let (first, here) = (renamed(face[0]), renamed(face[corner]));
+        // The end of the list may lead back to corner 0.
+        corner == 0
+            || here != renamed(face[corner - 1])
+                && !(here == first && face[corner..].iter().all(|&v| renamed(v) == first))
+    };
+    (0..face.len()).filter(is_kept)
+}
+
+/// For each position the lowest index of its cluster: the transitive closure of
+/// all pairs within `distance`.
+pub(crate) fn clusters(positions: &[DVec3], distance: f64) -> Vec<u32> {
+    let mut sets = Sets::new(positions.len());
+    let mut order: Vec<u32> = (0..positions.len() as u32).collect();
+    let key = |&i: &u32| {
+        // Adding zero turns -0 into 0; finite floats of one sign sort by value.
+        let p = positions[i as usize] + DVec3::ZERO;
+        (p.to_array().map(f64::to_bits), i)
+    };
+    order.sort_unstable_by_key(key);
+    for run in order.chunk_by(|a, b| key(a).0 == key(b).0) {
+        for &i in &run[1..] {
+            sets.join(run[0], i);
+        }
+    }
+    if distance > 0.0 {
+        join_near(positions, distance, &mut sets);
+    }
+    (0..positions.len() as u32).map(|i| sets.root(i)).collect()
+}
+
+/// Joins all pairs within `distance` by a grid whose cells are so small that
+/// all points of one cell belong together.
+fn join_near(positions: &[DVec3], distance: f64, sets: &mut Sets) {
+    let Some(low) = positions.iter().copied().reduce(DVec3::min) else {
+        return;
+    };
+    // Below 1/sqrt(3): the cell's diagonal is shorter than the distance.
+    let side = distance * 0.577;
+    let cell_of = |p: DVec3| ((p - low) / side).floor().to_array().map(|x| x as i64);
+    let mut points: Vec<([i64; 3], u32)> = (0..positions.len() as u32)
+        .filter(|&i| sets.root(i) == i)
+        .map(|i| (cell_of(positions[i as usize]), i))
+        .collect();
+    points.sort_unstable();
+    let cells: Vec<&[([i64; 3], u32)]> = points.chunk_by(|a, b| a.0 == b.0).collect();
+    for cell in &cells {
+        for point in &cell[1..] {
+            sets.join(cell[0].1, point.1);
+        }
+    }
+    let near = |a: &[([i64; 3], u32)], b: &[([i64; 3], u32)]| {
+        let place = |i: u32| positions[i as usize];
+        a.iter().any(|&(_, i)| {
+            b.iter()
+                .any(|&(_, j)| place(i).distance_squared(place(j)) <= distance * distance)
+        })
+    };
+    for [x, y] in FORWARD {
+        // The column of cells to look at moves on with the cell, so one cursor
+        // per column passes over all cells once.
+        let mut cursor = 0;
+        for cell in &cells {
+            let at = |z: i64| {
+                let [cx, cy, cz] = cell[0].0;
+                [
+                    cx.saturating_add(x),
+                    cy.saturating_add(y),
+                    cz.saturating_add(z),
+                ]
+            };
+            let first = at(if (x, y) == (0, 0) { 1 } else { -2 });
+            while cells.get(cursor).is_some_and(|other| other[0].0 < first) {
+                cursor += 1;
+            }
+            for other in cells[cursor..]
+                .iter()
+                .take_while(|other| other[0].0 <= at(2))
+            {
+                if sets.root(cell[0].1) != sets.root(other[0].1) && near(cell, other) {
+                    sets.join(cell[0].1, other[0].1);
+                }
+            }
+        }
+    }
+}
+
+/// Half of the columns that a cell of side 0.577 can have neighbours in.
+const FORWARD: [[i64; 2]; 13] = [
+    [0, 0],
+    [0, 1],
+    [0, 2],
+    [1, -2],
+    [1, -1],
+    [1, 0],
+    [1, 1],
+    [1, 2],
+    [2, -2],
+    [2, -1],
+    [2, 0],
+    [2, 1],
+    [2, 2],
+];
+
+/// Disjoint sets whose root is always the lowest member.
+pub(crate) struct Sets(Vec<u32>);
+
+impl Sets {
+    pub(crate) fn new(count: usize) -> Self {
+        Self((0..count as u32).collect())
+    }
+
+    pub(crate) fn root(&mut self, mut i: u32) -> u32 {
+        while self.0[i as usize] != i {
+            let up = self.0[self.0[i as usize] as usize];
+            self.0[i as usize] = up;
+            i = up;
+        }
+        i
+    }
+
+    pub(crate) fn join(&mut self, a: u32, b: u32) {
+        let (a, b) = (self.root(a), self.root(b));
+        self.0[a.max(b) as usize] = a.min(b);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Unmonitored;
+    use proptest::prelude::*;
+
+    fn brute(positions: &[DVec3], distance: f64) -> Vec<u32> {
+        let mut sets = Sets::new(positions.len());
+        for i in 0..positions.len() {
+            for j in 0..i {
+                if positions[i].distance_squared(positions[j]) <= distance * distance {
+                    sets.join(i as u32, j as u32);
+                }
+            }
+        }
+        (0..positions.len() as u32).map(|i| sets.root(i)).collect()
+    }
+
+    proptest! {
+        #[test]
+        fn clusters_are_the_closure_of_near_pairs(
+            // A coarse lattice makes exact coincidences and borderline distances common.
+            places in prop::collection::vec(prop::array::uniform3(-12i32..12), 1..60),
+            distance in prop::sample::select(vec![0.0, 0.1, 0.25, 0.3, 0.45]),
+        ) {
+            let positions: Vec<DVec3> = places
+                .iter()
+                .map(|p| DVec3::new(f64::from(p[0]), f64::from(p[1]), f64::from(p[2])) * 0.125)
+                .collect();
+            prop_assert_eq!(clusters(&positions, distance), brute(&positions, distance));
+        }
+    }
+
+    #[test]
+    fn negative_zero_is_zero() {
+        let places = [DVec3::new(0.0, 1.0, 0.0), DVec3::new(-0.0, 1.0, -0.0)];
+        assert_eq!(clusters(&places, 0.0), [0, 0]);
+    }
+
+    #[test]
+    fn chains_join_to_the_lowest_index_and_slivers_go() {
+        let strip = Mesh::from_faces(
+            vec![
+                [0., 0., 0.],
+                [1., 0., 0.],
+                [1., 1e-5, 0.],
+                [1., 2e-5, 0.],
+                [0., 1., 0.],
+            ],
+            &[&[0, 1, 2, 3, 4][..], &[1, 2, 3]],
+        )
+        .unwrap();
+        let welded = weld_vertices(&strip, 1.1e-5, &Unmonitored).unwrap();
+        assert_eq!(welded.mesh.face(0), [0, 1, 2]);
+        assert_eq!(welded.mesh.positions()[1], DVec3::new(1.0, 0.0, 0.0));
+        assert_eq!((welded.joined, welded.dropped_faces), (2, 1));
+        assert_eq!(welded.vertex_sources, [0, 1, 4]);
+    }
+
+    #[test]
+    fn a_corner_that_repeats_at_the_end_of_a_face_is_dropped() {
+        let quad = Mesh::from_faces(
+            vec![[0., 0., 0.], [1., 0., 0.], [1., 1., 0.], [0., 0., 0.]],
+            &[&[0, 1, 2, 3]],
+        )
+        .unwrap();
+        assert_eq!(
+            weld_vertices(&quad, 0.0, &Unmonitored)
+                .unwrap()
+                .mesh
+                .face(0),
+            [0, 1, 2]
+        );
+    }
+
+    #[test]
+    fn distances_without_meaning_are_refused() {
+        let quad = Mesh::from_faces(vec![[0.0; 3]; 3], &[&[0, 1, 2]]).unwrap();
+        for distance in [-1.0, f64::NAN, f64::INFINITY] {
+            assert!(weld_vertices(&quad, distance, &Unmonitored).is_err());
+        }
+    }
+}
