@@ -12,6 +12,7 @@ pub mod diffuse;
 pub mod digest;
 pub mod directions;
 mod displace;
+pub mod domains;
 mod error;
 mod field;
 mod fit;
