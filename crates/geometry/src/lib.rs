@@ -15,9 +15,12 @@ mod displace;
 pub mod domains;
 mod error;
 mod field;
+pub mod fields;
 mod fit;
+pub mod intersect;
 mod join;
 pub mod math;
+pub mod measure;
 mod mesh;
 mod monitor;
 mod naming;
@@ -31,6 +34,10 @@ mod rebuild;
 pub mod subdivide;
 pub mod surface;
 pub mod target;
+#[cfg(test)]
+mod test_shapes;
+#[cfg(test)]
+mod test_support;
 mod topology;
 pub mod transform;
 mod weld;
@@ -63,3 +70,13 @@ pub use offset::{PART, ShellPart, offset_mesh};
 pub use topology::{Adjacency, NO_EDGE, Topology};
 pub use weld::{Welded, weld_vertices};
 
+/// Attributes by which operations record where elements come from; files whose
+/// format has no place for them lose nothing that a user put there.
+pub const PROVENANCE: [&str; 6] = [
+    BASE_FACE,
+    COMPONENT_FACE,
+    COMPONENT,
+    PANEL,
+    subdivide::PARENT,
+    PART,
+];

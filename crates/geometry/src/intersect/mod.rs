@@ -1,0 +1,273 @@
+//! Faces of a mesh that cross each other, found by exact predicates.
+
+mod hinge;
+mod polygon;
+mod predicate;
+#[cfg(test)]
+mod tests;
+
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use crate::array::PANEL;
+use crate::measure::pieces_of_faces;
+use crate::mesh::{AttributeValues, Domain};
+use crate::surface::BoxTree;
+use crate::weld::clusters;
+use crate::{Field, GeometryError, Mesh, Monitor, Quantity};
+use polygon::{Polygon, Relation, relation};
+
+/// Which pairs of faces are looked at.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Between {
+    /// Faces of different components.
+    Components,
+    /// Faces of one component.
+    Inside,
+    /// All faces.
+    #[default]
+    All,
+}
+
+/// Settings of [`intersections`].
+#[derive(Debug, Clone, Copy, Default)]
+pub struct IntersectOptions {
+    /// Which pairs are looked at.
+    pub between: Between,
+    /// Crossings not deeper or not longer than this are contacts, in metres;
+    /// 0 for exact. `None` for 10⁻⁶ of the bounding box's diagonal.
+    pub tolerance: Option<f64>,
+}
+
+/// Faces that cross or touch.
+#[derive(Debug, Clone)]
+pub struct Intersections {
+    /// Pairs of faces whose insides cross, the lower first, ascending.
+    pub pairs: Vec<[u32; 2]>,
+    /// Pairs of faces that touch, coincide or overlap in one plane, and that are
+    /// not neighbours with nothing but a vertex or edge in common.
+    pub contacts: Vec<[u32; 2]>,
+    /// Pairs of different components with faces that cross, ascending; numbered
+    /// from 0 by their first face.
+    pub component_pairs: Vec<[u32; 2]>,
+    /// How many components there are.
+    pub components: usize,
+    /// Faces in at least one of `pairs`, ascending.
+    pub faces: Vec<u32>,
+    /// How many others each face crosses.
+    pub field: Field,
+    /// The tolerance that was used, in metres.
+    pub tolerance: f64,
+}
+
+/// Coordinates up to here keep the exact predicates from overflowing.
+const LARGEST: f64 = 1e75;
+
+/// Share of the bounding box's diagonal that is the tolerance left out.
+const TOLERANCE: f64 = 1e-6;
+
+/// Faces per chunk of work.
+const FACES: usize = 512;
+
+/// Finds the pairs of faces whose insides cross.
+///
+/// A polygon above a triangle has no one surface, so a pair counts only if it
+/// crosses under each choice of both polygons' diagonals: the fans from corners
+/// 0 and 1. A crossing not deeper than the tolerance, or whose segment is not
+/// longer, is a contact; its depth is the least distance that would separate
+/// the two triangles along the normal of either. Touching and coincident faces
+/// and those that overlap in one plane are contacts. Neighbours that only share
+/// a vertex or an edge are neither; a face folded over exactly onto its
+/// neighbour crosses it. Vertices at equal positions count as one, so a mesh
+/// need not be welded.
+///
+/// A component is a panel where the faces have integer attribute [`PANEL`],
+/// else a connected piece.
+///
+/// Signs are exact (Shewchuk 1997, triangles as in Guigue and Devillers 2003);
+/// depth and length are floating point. Triangles without area meet nothing.
+/// Cost: O(faces · log faces + pairs of faces whose boxes meet).
+///
+/// ```
+/// use tessgraph_geometry::{Mesh, Unmonitored, intersect::intersections};
+/// let crossed = Mesh::from_faces(
+///     vec![[0., 0., 0.], [4., 0., 0.], [0., 4., 0.], [1., 1., -1.], [1., 1., 1.], [9., 9., 1.]],
+///     &[[0, 1, 2], [3, 4, 5]],
+/// )?;
+/// let found = intersections(&crossed, &Default::default(), &Unmonitored)?;
+/// assert_eq!(found.pairs, [[0, 1]]);
+/// # Ok::<(), tessgraph_geometry::GeometryError>(())
+/// ```
+///
+/// # Errors
+/// [`GeometryError::OutOfRange`] for a negative tolerance or coordinates above
+/// 10⁷⁵, [`GeometryError::Cancelled`].
+pub fn intersections(
+    mesh: &Mesh,
+    options: &IntersectOptions,
+    monitor: &dyn Monitor,
+) -> Result<Intersections, GeometryError> {
+    let tolerance = options.tolerance.unwrap_or(mesh.diagonal() * TOLERANCE);
+    check(mesh, tolerance)?;
+    let (component, components) = components(mesh);
+    let mut found = Found::default();
+    if mesh.face_count() > 0 {
+        let wanted = |a: u32, b: u32| {
+            let same = component[a as usize] == component[b as usize];
+            match options.between {
+                Between::Components => !same,
+                Between::Inside => same,
+                Between::All => true,
+            }
+        };
+        found = search(mesh, &wanted, tolerance, monitor)?;
+    }
+    let mut component_pairs: Vec<[u32; 2]> = found
+        .pairs
+        .iter()
+        .map(|pair| pair.map(|face| component[face as usize]))
+        .filter(|[a, b]| a != b)
+        .map(|[a, b]| [a.min(b), a.max(b)])
+        .collect();
+    component_pairs.sort_unstable();
+    component_pairs.dedup();
+    let mut counts = vec![0.0; mesh.face_count()];
+    for &face in found.pairs.iter().flatten() {
+        counts[face as usize] += 1.0;
+    }
+    let faces = (0..mesh.face_count() as u32)
+        .filter(|&face| counts[face as usize] > 0.0)
+        .collect();
+    Ok(Intersections {
+        pairs: found.pairs,
+        contacts: found.contacts,
+        component_pairs,
+        components,
+        faces,
+        field: Field::new(Domain::Face, Quantity::Number, counts)?,
+        tolerance,
+    })
+}
+
+fn check(mesh: &Mesh, tolerance: f64) -> Result<(), GeometryError> {
+    if !(tolerance >= 0.0 && tolerance.is_finite()) {
+        return Err(GeometryError::OutOfRange {
+            what: "the tolerance",
+            value: tolerance,
+            requirement: "it must be finite and not negative",
+        });
+    }
+    let largest = |largest: f64, place: &DVec3| largest.max(place.abs().max_element());
+    let largest = mesh.positions().iter().fold(0.0, largest);
+    if largest > LARGEST {
+        return Err(GeometryError::OutOfRange {
+            what: "the largest coordinate",
+            value: largest,
+            requirement: "exact intersections need it below 1e75",
+        });
+    }
+    Ok(())
+}
+
+/// The component of each face, numbered by first face, and how many there are:
+/// the panels of face attribute [`PANEL`], else the connected pieces.
+pub(crate) fn components(mesh: &Mesh) -> (Vec<u32>, usize) {
+    let panels = mesh.attribute(PANEL, Domain::Face).map(|a| a.values());
+    let names: Vec<i64> = match panels {
+        Some(AttributeValues::Integer(panels)) => panels.to_vec(),
+        _ => pieces_of_faces(mesh.topology())
+            .into_iter()
+            .map(i64::from)
+            .collect(),
+    };
+    number(&names)
+}
+
+/// Equal names as equal numbers, from 0 in the order they first occur.
+fn number(names: &[i64]) -> (Vec<u32>, usize) {
+    let mut order: Vec<u32> = (0..names.len() as u32).collect();
+    order.sort_unstable_by_key(|&index| (names[index as usize], index));
+    let mut first = vec![0; names.len()];
+    for run in order.chunk_by(|&a, &b| names[a as usize] == names[b as usize]) {
+        for &index in run {
+            first[index as usize] = run[0];
+        }
+    }
+    let mut numbers = vec![0; names.len()];
+    let mut count = 0;
+    for index in 0..names.len() {
+        if first[index] as usize == index {
+            numbers[index] = count;
+            count += 1;
+        } else {
+            numbers[index] = numbers[first[index] as usize];
+        }
+    }
+    (numbers, count as usize)
+}
+
+/// Pairs by relation.
+#[derive(Debug, Default)]
+struct Found {
+    pairs: Vec<[u32; 2]>,
+    contacts: Vec<[u32; 2]>,
+}
+
+/// Looks at all wanted pairs whose boxes meet, in chunks of faces.
+fn search(
+    mesh: &Mesh,
+    wanted: &(dyn Fn(u32, u32) -> bool + Sync),
+    tolerance: f64,
+    monitor: &dyn Monitor,
+) -> Result<Found, GeometryError> {
+    let places = clusters(mesh.positions(), 0.0);
+    let tree = BoxTree::new(face_boxes(mesh), monitor)?;
+    let total = mesh.face_count();
+    let done = AtomicU64::new(0);
+    let chunks: Vec<Found> = (0..total.div_ceil(FACES))
+        .into_par_iter()
+        .map(|chunk| {
+            monitor.check()?;
+            let (mut found, mut near) = (Found::default(), Vec::new());
+            let faces = chunk * FACES..((chunk + 1) * FACES).min(total);
+            let count = faces.len() as u64;
+            for face in faces {
+                let face = face as u32;
+                near.clear();
+                tree.meeting_above(face, &mut near);
+                for &other in near.iter().filter(|&&other| wanted(face, other)) {
+                    let [a, b] = [face, other].map(|face| Polygon::new(mesh, &places, face));
+                    let bounds = [tree.bounds(face), tree.bounds(other)];
+                    match relation(&a, &b, bounds, tolerance) {
+                        Relation::Apart => {}
+                        Relation::Contact => found.contacts.push([face, other]),
+                        Relation::Crossing => found.pairs.push([face, other]),
+                    }
+                }
+            }
+            let before = done.fetch_add(count, Ordering::Relaxed);
+            monitor.progress(before + count, total as u64);
+            Ok(found)
+        })
+        .collect::<Result<_, GeometryError>>()?;
+    let mut all = Found::default();
+    for chunk in chunks {
+        all.pairs.extend(chunk.pairs);
+        all.contacts.extend(chunk.contacts);
+    }
+    Ok(all)
+}
+
+/// Lowest and highest corner of each face.
+fn face_boxes(mesh: &Mesh) -> Vec<[DVec3; 2]> {
+    let of_face = |face: &[u32]| {
+        let none = [DVec3::INFINITY, DVec3::NEG_INFINITY];
+        face.iter().fold(none, |[low, high], &vertex| {
+            let place = mesh.positions()[vertex as usize];
+            [low.min(place), high.max(place)]
+        })
+    };
+    mesh.topology().faces().map(of_face).collect()
+}
