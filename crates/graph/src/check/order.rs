@@ -1,0 +1,234 @@
+//! The order nodes are evaluated in, and cycles, which have none.
+
+use std::cmp::Reverse;
+use std::collections::{BinaryHeap, VecDeque};
+use std::ops::Range;
+
+use petgraph::algo::kosaraju_scc;
+use petgraph::graph::{DiGraph, NodeIndex};
+
+use crate::document::{Document, Item, Problems, Shape};
+use crate::names::shown;
+use crate::plan::PlanInput;
+
+/// All nodes, each after those it depends on, else in file order; `None` after
+/// reporting every cycle. Cost: O((nodes + edges) · log nodes).
+pub(super) fn check(
+    document: &Document,
+    inputs: &[Vec<PlanInput>],
+    problems: &mut Problems,
+) -> Option<Vec<usize>> {
+    let needs: Vec<Vec<usize>> = inputs.iter().map(|inputs| needed(inputs)).collect();
+    let order = sort(&needs);
+    if order.len() == needs.len() {
+        return Some(order);
+    }
+    for cycle in cycles(&needs, &order) {
+        report(document, inputs, &cycle, problems);
+    }
+    None
+}
+
+/// The nodes whose results the inputs use, each once, in ascending order.
+fn needed(inputs: &[PlanInput]) -> Vec<usize> {
+    let results = inputs.iter().flat_map(|input| input.origin.results());
+    let mut nodes: Vec<usize> = results.map(|result| result.node).collect();
+    nodes.sort_unstable();
+    nodes.dedup();
+    nodes
+}
+
+/// Kahn's algorithm with a heap: of all nodes that are ready, the first of the
+/// file. Nodes on or behind a cycle are missing from the result.
+fn sort(needs: &[Vec<usize>]) -> Vec<usize> {
+    let mut users = vec![Vec::new(); needs.len()];
+    let mut waiting: Vec<usize> = needs.iter().map(Vec::len).collect();
+    for (node, needs) in needs.iter().enumerate() {
+        for &need in needs {
+            users[need].push(node);
+        }
+    }
+    let ready = waiting.iter().enumerate().filter(|(_, count)| **count == 0);
+    let mut ready: BinaryHeap<Reverse<usize>> = ready.map(|(node, _)| Reverse(node)).collect();
+    let mut order = Vec::with_capacity(needs.len());
+    while let Some(Reverse(node)) = ready.pop() {
+        order.push(node);
+        for &user in &users[node] {
+            waiting[user] -= 1;
+            if waiting[user] == 0 {
+                ready.push(Reverse(user));
+            }
+        }
+    }
+    order
+}
+
+/// One cycle, as short as can be, through the first node of each knot: each
+/// node needs the next, the last needs the first.
+fn cycles(needs: &[Vec<usize>], ordered: &[usize]) -> Vec<Vec<usize>> {
+    let mut stuck = vec![true; needs.len()];
+    ordered.iter().for_each(|&node| stuck[node] = false);
+    let mut graph = DiGraph::<(), ()>::with_capacity(needs.len(), 0);
+    for _ in needs {
+        graph.add_node(());
+    }
+    for (node, needs) in needs.iter().enumerate().filter(|(node, _)| stuck[*node]) {
+        for &need in needs {
+            graph.add_edge(NodeIndex::new(node), NodeIndex::new(need), ());
+        }
+    }
+    // Kosaraju's algorithm walks with its own stack; Tarjan's recurses, which
+    // a knot of 100 000 nodes would turn into a stack overflow.
+    let mut knots: Vec<Vec<usize>> = kosaraju_scc(&graph)
+        .into_iter()
+        .map(|knot| knot.into_iter().map(NodeIndex::index).collect())
+        .filter(|knot: &Vec<usize>| knot.len() > 1 || needs[knot[0]].contains(&knot[0]))
+        .collect();
+    knots.iter_mut().for_each(|knot| knot.sort_unstable());
+    knots.sort();
+    knots
+        .iter()
+        .filter_map(|knot| shortest_cycle(needs, knot))
+        .collect()
+}
+
+/// Breadth-first from the knot's first node until it is met again.
+fn shortest_cycle(needs: &[Vec<usize>], knot: &[usize]) -> Option<Vec<usize>> {
+    let start = *knot.first()?;
+    let mut from = vec![usize::MAX; needs.len()];
+    let mut queue = VecDeque::from([start]);
+    while let Some(node) = queue.pop_front() {
+        for &next in &needs[node] {
+            if next == start {
+                let mut cycle = vec![node];
+                while let Some(&last) = cycle.last().filter(|last| **last != start) {
+                    cycle.push(from[last]);
+                }
+                cycle.reverse();
+                return Some(cycle);
+            }
+            if from[next] == usize::MAX && knot.binary_search(&next).is_ok() {
+                from[next] = node;
+                queue.push_back(next);
+            }
+        }
+    }
+    None
+}
+
+/// More places than these make a diagnostic unreadable; the message has all.
+const MAX_LABELS: usize = 8;
+
+fn report(
+    document: &Document,
+    inputs: &[Vec<PlanInput>],
+    cycle: &[usize],
+    problems: &mut Problems,
+) {
+    let name = |node: usize| format!("`{}`", shown(&document.nodes[node].name.value));
+    let next = |place: usize| cycle[(place + 1) % cycle.len()];
+    let place = |place: usize| edge(document, inputs, cycle[place], next(place));
+    let (message, help) = match cycle {
+        [node] => (
+            format!("{} takes its own result", name(*node)),
+            "take another node's result",
+        ),
+        _ => {
+            let names: Vec<String> = cycle
+                .iter()
+                .chain(cycle.first())
+                .map(|&n| name(n))
+                .collect();
+            let message = format!("nodes need each other in a cycle: {}", names.join(" -> "));
+            (message, "break the cycle at one of these inputs")
+        }
+    };
+    let remark = format!("{} takes {}", name(cycle[0]), name(next(0)));
+    let mut error = problems.error("cycle", &place(0), message, remark);
+    for (index, &user) in cycle.iter().enumerate().take(MAX_LABELS).skip(1) {
+        let remark = format!("{} takes {}", name(user), name(next(index)));
+        error = error.with_label(place(index), remark);
+    }
+    problems.add(
+        error
+            .with_help(help)
+            .with_node(&document.nodes[cycle[0]].name.value),
+    );
+}
+
+/// Where `user` refers to a result of `used`.
+fn edge(document: &Document, inputs: &[Vec<PlanInput>], user: usize, used: usize) -> Range<usize> {
+    let uses = |input: &&PlanInput| {
+        input
+            .origin
+            .results()
+            .iter()
+            .any(|result| result.node == used)
+    };
+    let node = &document.nodes[user];
+    let span = inputs[user]
+        .iter()
+        .find(uses)
+        .and_then(|input| input.span.clone());
+    let Some(span) = span else {
+        return node.name.span.clone();
+    };
+    let field = node.fields.iter().find(|field| field.value.span == span);
+    let name = &document.nodes[used].name.value;
+    let text = document.source.text();
+    field
+        .and_then(|field| mention(text, &field.value, name))
+        .unwrap_or(span)
+}
+
+/// The item of a list that names the node.
+fn mention(text: &str, item: &Item, name: &str) -> Option<Range<usize>> {
+    match &item.shape {
+        Shape::List(items) => items.iter().find_map(|item| mention(text, item, name)),
+        Shape::Tuple(tuple) => tuple
+            .items
+            .iter()
+            .find_map(|item| mention(text, item, name)),
+        Shape::Text => {
+            let value = item.text(text)?.value;
+            (value.split('.').next() == Some(name)).then(|| item.span.clone())
+        }
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn among_equals_the_order_of_the_file_counts() {
+        // 0 needs 3; 1, 2 and 3 need nothing.
+        assert_eq!(sort(&[vec![3], vec![], vec![], vec![]]), [1, 2, 3, 0]);
+    }
+
+    #[test]
+    fn each_knot_gives_one_shortest_cycle() {
+        let needs = [vec![1], vec![2, 0], vec![0], vec![3], vec![0]];
+        let order = sort(&needs);
+        assert!(order.is_empty());
+        assert_eq!(cycles(&needs, &order), [vec![0, 1], vec![3]]);
+    }
+
+    #[test]
+    fn long_chains_and_long_cycles_do_not_recurse() {
+        let count = 100_000;
+        let chain: Vec<Vec<usize>> = (0..count)
+            .map(|node| {
+                if node + 1 < count {
+                    vec![node + 1]
+                } else {
+                    vec![]
+                }
+            })
+            .collect();
+        assert_eq!(sort(&chain).len(), count);
+        let ring: Vec<Vec<usize>> = (0..count).map(|node| vec![(node + 1) % count]).collect();
+        assert_eq!(cycles(&ring, &[])[0].len(), count);
+    }
+}

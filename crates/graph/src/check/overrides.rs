@@ -1,0 +1,91 @@
+//! Values for parameters from outside the file: `--set name=value`.
+
+use crate::document::{Number, ParamKind, Parameter, Problems};
+use crate::names::shown;
+use crate::value::Value;
+
+use super::scope::suggest;
+
+/// Gives parameters the values of `set`; numbers are in the file's units.
+pub(super) fn apply(params: &mut [Parameter], set: &[(String, String)], problems: &mut Problems) {
+    for (name, text) in set {
+        let place = params.iter().position(|param| param.name.value == *name);
+        let Some(place) = place else {
+            let message = format!(
+                "`--set {}={}`: the graph has no parameter `{}`",
+                shown(name),
+                shown(text),
+                shown(name)
+            );
+            let names = params.iter().map(|param| param.name.value.as_str());
+            let help = suggest(name, names, "its parameters");
+            problems.add(problems.placeless("unknown_name", message).with_help(help));
+            continue;
+        };
+        match parse(&params[place], text) {
+            Ok(value) => params[place].value = Some(value),
+            Err(refusal) => report(&params[place], text, refusal, problems),
+        }
+    }
+}
+
+/// Why a value is refused, and a way out.
+struct Refusal {
+    code: &'static str,
+    message: String,
+    help: String,
+}
+
+fn parse(param: &Parameter, text: &str) -> Result<Value, Refusal> {
+    let wrong = |help: &str| Refusal {
+        code: "wrong_kind",
+        message: format!(
+            "`{}` takes {}",
+            shown(&param.name.value),
+            param.kind.label()
+        ),
+        help: help.to_owned(),
+    };
+    match param.kind {
+        ParamKind::Text | ParamKind::Path => Ok(Value::Text(text.into())),
+        ParamKind::Bool => match text.trim() {
+            "true" => Ok(Value::Bool(true)),
+            "false" => Ok(Value::Bool(false)),
+            _ => Err(wrong("write true or false")),
+        },
+        ParamKind::Choice => param
+            .choice(text.trim())
+            .map_err(|(message, help)| Refusal {
+                code: "unknown_name",
+                message,
+                help: help.unwrap_or_default(),
+            }),
+        ParamKind::Number | ParamKind::Integer => {
+            let text = text.trim();
+            let number = match (text.parse::<i64>(), text.parse::<f64>()) {
+                (Ok(number), _) => Number::Whole(number),
+                (Err(_), Ok(number)) => Number::Real(number),
+                (Err(_), Err(_)) if param.kind == ParamKind::Integer => {
+                    return Err(wrong("write a whole number such as 3"));
+                }
+                (Err(_), Err(_)) => return Err(wrong("write a number such as 0.12, with a point")),
+            };
+            param.number(number).map_err(|message| Refusal {
+                code: "out_of_range",
+                message,
+                help: "the parameter declares its range; give a value within it".to_owned(),
+            })
+        }
+    }
+}
+
+fn report(param: &Parameter, text: &str, refusal: Refusal, problems: &mut Problems) {
+    let message = format!(
+        "`--set {}={}`: {}",
+        shown(&param.name.value),
+        shown(text),
+        refusal.message
+    );
+    let error = problems.error(refusal.code, &param.span, message, "declared here");
+    problems.add(error.with_help(refusal.help));
+}

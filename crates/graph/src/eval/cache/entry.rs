@@ -1,0 +1,133 @@
+//! What is known about a node's results under one key.
+
+use tessgraph_geometry::digest::Digest;
+
+use crate::node::FileUse;
+use crate::value::Value;
+use crate::value::encode::{Decoder, Encoder};
+
+/// Values up to this many bytes stand in the entry itself: numbers, reports.
+pub(in crate::eval) const SMALL: usize = 2048;
+
+/// What is known about a node's results under one key.
+#[derive(Debug, Clone)]
+pub(in crate::eval) struct Entry {
+    /// Each result, in the order of the node's spec.
+    pub(in crate::eval) results: Vec<Known>,
+    /// Files found only while evaluating; a hit needs all of them unchanged.
+    pub(in crate::eval) files: Vec<FileUse>,
+    /// What the node warned of.
+    pub(in crate::eval) warnings: Vec<String>,
+    /// Milliseconds it took to compute.
+    pub(in crate::eval) ms: f64,
+    /// Bytes of all results in memory.
+    pub(in crate::eval) bytes: u64,
+}
+
+/// What an entry knows about one result.
+#[derive(Debug, Clone)]
+pub(in crate::eval) struct Known {
+    pub(in crate::eval) digest: Digest,
+    /// The value itself if it is small: an expression over a number needs no
+    /// further file.
+    pub(in crate::eval) small: Option<Value>,
+}
+
+impl Known {
+    pub(in crate::eval) fn new(value: &Value) -> Self {
+        Self {
+            digest: value.digest(),
+            small: is_small(value).then(|| value.clone()),
+        }
+    }
+}
+
+/// Whether the value is stored within its entry.
+fn is_small(value: &Value) -> bool {
+    match value {
+        Value::Mesh(_) | Value::Directions(_) | Value::Field(_) | Value::Formula(_) => false,
+        Value::Bool(_) | Value::Integer(_) | Value::Number(_) | Value::Vector(_) => true,
+        Value::List(items) => items.len() <= 64 && items.iter().all(is_small),
+        _ => {
+            // Texts, reports and tables: writing them is cheap even if they turn
+            // out to be too long.
+            let mut out = Encoder::new();
+            let (stored, (bytes, topologies)) = (value.encode(&mut out), out.finish());
+            stored && topologies.is_empty() && bytes.len() <= SMALL
+        }
+    }
+}
+
+impl Entry {
+    /// The entry as bytes.
+    pub(super) fn encode(&self) -> Vec<u8> {
+        let mut out = Encoder::new();
+        out.float(self.ms).number(self.bytes);
+        out.number(self.results.len() as u64);
+        for known in &self.results {
+            out.digest(known.digest);
+            out.byte(u8::from(known.small.is_some()));
+            if let Some(value) = &known.small {
+                value.encode(&mut out);
+            }
+        }
+        out.number(self.files.len() as u64);
+        for file in &self.files {
+            out.number(file.input as u64).text(&file.relative);
+            out.byte(u8::from(file.content.is_some()));
+            if let Some(content) = file.content {
+                out.digest(content);
+            }
+        }
+        out.number(self.warnings.len() as u64);
+        for warning in &self.warnings {
+            out.text(warning);
+        }
+        out.finish().0
+    }
+
+    /// The entry that [`Entry::encode`] wrote.
+    pub(super) fn decode(bytes: &[u8]) -> Option<Self> {
+        let mut from = Decoder::new(bytes, &|_| None);
+        let (ms, size) = (from.float()?, from.number()?);
+        let count = from.count()?;
+        let results: Option<_> = (0..count).map(|_| decode_known(&mut from)).collect();
+        let count = from.count()?;
+        let files: Option<_> = (0..count).map(|_| decode_file(&mut from)).collect();
+        let count = from.count()?;
+        let warnings: Option<_> = (0..count).map(|_| from.text().map(str::to_owned)).collect();
+        let entry = Self {
+            results: results?,
+            files: files?,
+            warnings: warnings?,
+            ms,
+            bytes: size,
+        };
+        from.finish(entry)
+    }
+}
+
+fn decode_known(from: &mut Decoder<'_>) -> Option<Known> {
+    let digest = from.digest()?;
+    let small = match from.byte()? {
+        0 => None,
+        1 => Some(Value::decode(from)?),
+        _ => return None,
+    };
+    Some(Known { digest, small })
+}
+
+fn decode_file(from: &mut Decoder<'_>) -> Option<FileUse> {
+    let input = usize::try_from(from.number()?).ok()?;
+    let relative = from.text()?.to_owned();
+    let content = match from.byte()? {
+        0 => None,
+        1 => Some(from.digest()?),
+        _ => return None,
+    };
+    Some(FileUse {
+        input,
+        relative,
+        content,
+    })
+}

@@ -1,0 +1,225 @@
+//! Results kept for later: key to digests, digest to value, in memory and on
+//! disk.
+
+mod disk;
+mod entry;
+mod frame;
+mod maintain;
+mod memory;
+#[cfg(test)]
+mod tests;
+mod writer;
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
+
+use tessgraph_geometry::Topology;
+use tessgraph_geometry::digest::Digest;
+
+use self::disk::Disk;
+use self::frame::FileKind;
+use self::memory::Memory;
+use self::writer::{Writer, topology_of};
+use crate::value::Value;
+use crate::value::encode::{Decoder, decode_topology};
+
+pub(super) use entry::{Entry, Known};
+pub use maintain::{CacheFolder, FolderStats, GcReport, VerifyReport};
+pub(super) use writer::ToStore;
+
+/// Entries kept in memory; beyond it the older half is let go.
+const MAX_ENTRIES: usize = 1 << 16;
+
+/// A two-level cache: small entries are kept, values live within a byte budget.
+#[derive(Debug)]
+pub(super) struct Cache {
+    entries: Mutex<Entries>,
+    values: Mutex<Memory>,
+    /// Topologies in use by digest, so that equal ones are one and their
+    /// adjacency is built once.
+    topologies: Mutex<BTreeMap<Digest, Weak<Topology>>>,
+    disk: Option<Arc<Disk>>,
+    writer: Writer,
+    /// Why there is no disk, if one was asked for.
+    no_disk: Option<String>,
+    entry_reads: AtomicU64,
+    value_reads: AtomicU64,
+}
+
+/// Entries by key, each with the time it was put there.
+#[derive(Debug, Default)]
+struct Entries {
+    by_key: BTreeMap<Digest, (u64, Arc<Entry>)>,
+    clock: u64,
+}
+
+/// How much a cache holds and what was read from its folder.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct CacheStats {
+    /// Nodes' results known by key, in memory.
+    pub entries: usize,
+    /// Values held in memory.
+    pub values: usize,
+    /// Bytes of these values, shared buffers counted once.
+    pub bytes: u64,
+    /// Entries read from the folder so far.
+    pub entry_reads: u64,
+    /// Values read from the folder so far.
+    pub value_reads: u64,
+    /// Why the folder is not used, or not written to, if that is so.
+    pub warning: Option<String>,
+}
+
+impl Cache {
+    /// A cache that holds up to `bytes` of values in memory, and more in
+    /// `folder` if there is one. A folder that cannot be used is a warning.
+    pub(super) fn new(bytes: u64, folder: Option<&Path>) -> Self {
+        let (disk, no_disk) = match folder.map(Disk::open) {
+            Some(Ok(disk)) => (Some(Arc::new(disk)), None),
+            Some(Err(reason)) => (None, Some(reason)),
+            None => (None, None),
+        };
+        Self {
+            entries: Mutex::default(),
+            values: Mutex::new(Memory::new(bytes)),
+            topologies: Mutex::default(),
+            disk,
+            writer: Writer::default(),
+            no_disk,
+            entry_reads: AtomicU64::new(0),
+            value_reads: AtomicU64::new(0),
+        }
+    }
+
+    pub(super) fn stats(&self) -> CacheStats {
+        let (values, bytes) = {
+            let memory = lock(&self.values);
+            (memory.len(), memory.bytes())
+        };
+        CacheStats {
+            entries: lock(&self.entries).by_key.len(),
+            values,
+            bytes,
+            entry_reads: self.entry_reads.load(Ordering::Relaxed),
+            value_reads: self.value_reads.load(Ordering::Relaxed),
+            warning: self.warning(),
+        }
+    }
+
+    /// What is known under `key`; no value is loaded.
+    pub(super) fn entry(&self, key: Digest) -> Option<Arc<Entry>> {
+        if let Some((_, entry)) = lock(&self.entries).by_key.get(&key) {
+            return Some(Arc::clone(entry));
+        }
+        let disk = self.disk.as_ref()?;
+        let entry = disk.read(FileKind::Entry, key, Entry::decode)?;
+        self.entry_reads.fetch_add(1, Ordering::Relaxed);
+        let entry = Arc::new(entry);
+        self.remember(key, &entry);
+        Some(entry)
+    }
+
+    fn remember(&self, key: Digest, entry: &Arc<Entry>) {
+        let mut entries = lock(&self.entries);
+        entries.clock += 1;
+        let now = entries.clock;
+        entries.by_key.insert(key, (now, Arc::clone(entry)));
+        if entries.by_key.len() > MAX_ENTRIES {
+            let oldest = now - MAX_ENTRIES as u64 / 2;
+            entries.by_key.retain(|_, (time, _)| *time > oldest);
+        }
+    }
+
+    /// The value with that digest, from memory or disk; `None` if it was let go
+    /// or is damaged. `cost` is what it took to compute, in milliseconds.
+    pub(super) fn value(&self, digest: Digest, cost: f64) -> Option<Value> {
+        if let Some(value) = lock(&self.values).get(digest) {
+            return Some(value);
+        }
+        let disk = self.disk.as_ref()?;
+        let find = |digest| self.topology(disk, digest);
+        // No lock is held here: checksums of large files use the thread pool.
+        let value = disk.read(FileKind::Value, digest, |bytes| {
+            let mut from = Decoder::new(bytes, &find);
+            let value = Value::decode(&mut from)?;
+            from.finish(value)
+        })?;
+        self.value_reads.fetch_add(1, Ordering::Relaxed);
+        lock(&self.values).insert(digest, &value, cost);
+        Some(value)
+    }
+
+    fn topology(&self, disk: &Disk, digest: Digest) -> Option<Arc<Topology>> {
+        let known = lock(&self.topologies).get(&digest).and_then(Weak::upgrade);
+        if known.is_some() {
+            return known;
+        }
+        let topology = disk.read(FileKind::Topology, digest, decode_topology)?;
+        Some(self.share(digest, Arc::new(topology)))
+    }
+
+    /// The topology of that digest that is in use already, or this one.
+    fn share(&self, digest: Digest, topology: Arc<Topology>) -> Arc<Topology> {
+        let mut known = lock(&self.topologies);
+        if let Some(other) = known.get(&digest).and_then(Weak::upgrade) {
+            return other;
+        }
+        if known.len() >= 256 && known.len().is_power_of_two() {
+            known.retain(|_, topology| topology.strong_count() > 0);
+        }
+        known.insert(digest, Arc::downgrade(&topology));
+        topology
+    }
+
+    /// Keeps results in memory.
+    pub(super) fn insert(&self, key: Digest, entry: &Arc<Entry>, values: &[Value]) {
+        for (known, value) in entry.results.iter().zip(values) {
+            if let Some(topology) = topology_of(value) {
+                self.share(topology.digest(), Arc::clone(topology));
+            }
+            if known.small.is_none() {
+                lock(&self.values).insert(known.digest, value, entry.ms);
+            }
+        }
+        self.remember(key, entry);
+    }
+
+    /// Has results kept on disk, soon.
+    pub(super) fn store(&self, work: ToStore) {
+        if let Some(disk) = &self.disk {
+            self.writer.store(disk, work);
+        }
+    }
+
+    /// Returns when everything that is to be kept on disk is there.
+    pub(super) fn flush(&self) {
+        self.writer.flush();
+    }
+
+    /// Why the folder is not used, or not written to, if that is so.
+    pub(super) fn warning(&self) -> Option<String> {
+        let disk = self.disk.as_deref();
+        self.no_disk
+            .clone()
+            .or_else(|| disk.and_then(Disk::warning))
+    }
+
+    /// Content kept under the identity of a graph.
+    pub(super) fn last_run(&self, graph: Digest) -> Option<Vec<u8>> {
+        let disk = self.disk.as_ref()?;
+        disk.read(FileKind::LastRun, graph, |bytes| Some(bytes.to_vec()))
+    }
+
+    /// Replaces what is kept under the identity of a graph.
+    pub(super) fn set_last_run(&self, graph: Digest, content: &[u8]) {
+        if let Some(disk) = &self.disk {
+            disk.write(FileKind::LastRun, graph, 0.0, content);
+        }
+    }
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}

@@ -1,0 +1,194 @@
+//! What became of each node, and the values that were asked for.
+
+use std::collections::BTreeMap;
+use std::fmt;
+use std::sync::{Arc, OnceLock};
+
+use tessgraph_geometry::digest::Digest;
+
+use super::cache::Cache;
+use super::explain::KeyPart;
+use crate::diagnostic::{Diagnostic, Severity};
+use crate::plan::ResultRef;
+use crate::value::Value;
+
+/// What the evaluator did about a node.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Outcome {
+    /// It was evaluated.
+    Computed,
+    /// Its results were found, and nothing above it was computed in this run.
+    Cached,
+    /// Its results were found although something above it was computed: the
+    /// change did not reach it.
+    CutOff,
+    /// It reported an error.
+    Failed,
+    /// An input of it failed.
+    Blocked,
+    /// Not needed, or the run was cancelled before it finished.
+    Skipped,
+}
+
+impl Outcome {
+    /// Its name in reports: `computed`, `cut_off`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Computed => "computed",
+            Self::Cached => "cached",
+            Self::CutOff => "cut_off",
+            Self::Failed => "failed",
+            Self::Blocked => "blocked",
+            Self::Skipped => "skipped",
+        }
+    }
+
+    /// Whether the node's results are there.
+    pub fn is_done(self) -> bool {
+        matches!(self, Self::Computed | Self::Cached | Self::CutOff)
+    }
+}
+
+impl fmt::Display for Outcome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// What became of one node.
+#[derive(Debug, Clone)]
+pub struct NodeRun {
+    /// Its name in the file.
+    pub name: String,
+    /// What kind of node it is.
+    pub kind: &'static str,
+    /// What the evaluator did.
+    pub outcome: Outcome,
+    /// Milliseconds its evaluation took; 0 unless it was computed or failed.
+    pub ms: f64,
+    /// Bytes of its results in memory, shared buffers counted once per node.
+    pub bytes: usize,
+    /// What it warned of, also when its result was reused.
+    pub warnings: Vec<String>,
+}
+
+/// When and where a node was evaluated, for a time line.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NodeTime {
+    /// Milliseconds from the start of the run to the start of the evaluation.
+    pub start_ms: f64,
+    /// Milliseconds from the start of the run to its end.
+    pub end_ms: f64,
+    /// The thread of the pool it began on.
+    pub thread: usize,
+}
+
+/// The result of an evaluation.
+#[derive(Debug)]
+pub struct Evaluation {
+    /// One entry per node of the plan, in the plan's order.
+    pub nodes: Vec<NodeRun>,
+    /// When each node was evaluated, in the plan's order; `None` for those that
+    /// were not.
+    pub times: Vec<Option<NodeTime>>,
+    /// Errors and warnings of nodes, in the plan's order.
+    pub diagnostics: Vec<Diagnostic>,
+    /// Whether the run was cancelled.
+    pub cancelled: bool,
+    pub(super) wanted: BTreeMap<ResultRef, Wanted>,
+    /// Each node's key and what it was made of.
+    pub(super) keys: Vec<Option<(Option<Digest>, Vec<KeyPart>)>>,
+    pub(super) cache: Option<Arc<Cache>>,
+}
+
+/// A result that was asked for.
+#[derive(Debug)]
+pub(super) struct Wanted {
+    digest: Digest,
+    provenance: Digest,
+    ms: f64,
+    value: OnceLock<Option<Value>>,
+}
+
+impl Wanted {
+    pub(super) fn new(digest: Digest, provenance: Digest, ms: f64, value: Option<Value>) -> Self {
+        let value = value.map(Some).map_or_else(OnceLock::new, OnceLock::from);
+        Self {
+            digest,
+            provenance,
+            ms,
+            value,
+        }
+    }
+}
+
+impl Evaluation {
+    /// A result that was asked for; `None` if it could not be computed.
+    ///
+    /// If [`Observer::needs`] said that the value is not needed it is loaded
+    /// from the cache now, and `None` too if it has been let go meanwhile.
+    pub fn value(&self, result: ResultRef) -> Option<&Value> {
+        let wanted = self.wanted.get(&result)?;
+        if let Some(value) = wanted.value.get() {
+            return value.as_ref();
+        }
+        // Not inside the cell: loading uses the thread pool, and a thread that waits
+        // there may take up a task that asks for this value.
+        let cache = self.cache.as_ref();
+        let value = cache.and_then(|cache| cache.value(wanted.digest, wanted.ms));
+        wanted.value.get_or_init(|| value).as_ref()
+    }
+
+    /// Content digest of a result that was asked for, known without its value.
+    pub fn digest(&self, result: ResultRef) -> Option<Digest> {
+        self.wanted.get(&result).map(|wanted| wanted.digest)
+    }
+
+    /// Digest of everything a wanted result was made from: kinds and versions
+    /// of nodes, literals, and file contents, but no names and no layout. Equal
+    /// digests mean equal results.
+    pub fn provenance(&self, result: ResultRef) -> Option<Digest> {
+        self.wanted.get(&result).map(|wanted| wanted.provenance)
+    }
+
+    /// Whether no node failed and the run was not cancelled.
+    pub fn is_ok(&self) -> bool {
+        !self.cancelled
+            && self
+                .diagnostics
+                .iter()
+                .all(|d| d.severity != Severity::Error)
+    }
+}
+
+/// Is told what happens during an evaluation, and can stop it.
+///
+/// Called from several threads. Nodes are named by index into the plan.
+pub trait Observer: Sync {
+    /// Whether the value of a result that was asked for is needed, now that its
+    /// digest is known. An output whose file is unchanged needs none, and then
+    /// none is read from the cache. Not asked about what was computed anyhow.
+    fn needs(&self, _result: ResultRef, _digest: Digest) -> bool {
+        true
+    }
+
+    /// A node's evaluation has begun. A node whose results were found begins
+    /// after that if its values turn out to be lost.
+    fn started(&self, _node: usize) {}
+
+    /// A node has done `done` of `total` units of its work.
+    fn progress(&self, _node: usize, _done: u64, _total: u64) {}
+
+    /// A node is dealt with.
+    fn finished(&self, _node: usize, _run: &NodeRun) {}
+
+    /// Whether the evaluation should stop; polled often.
+    fn cancelled(&self) -> bool {
+        false
+    }
+}
+
+/// An observer that ignores everything and never stops.
+pub struct Silent;
+
+impl Observer for Silent {}
