@@ -1,0 +1,82 @@
+//! A field made visible.
+
+use std::sync::Arc;
+
+use tessgraph_geometry::{Attribute, AttributeValues, Field, Mesh};
+use tessgraph_graph::{EvalCx, Node, NodeError};
+use tessgraph_io::viridis;
+use tessgraph_macros::{Inputs, Outputs};
+
+/// Colours a mesh by a field, from dark blue (low) to yellow (high).
+///
+/// The colours are the attribute `color` of the vertices or faces, in linear light,
+/// which GLB and PLY files hold. The colour map is viridis: even to the eye, and
+/// legible in grey and to colour-blind readers. Lengths count in the file's
+/// units.
+///
+/// ```ron
+/// Graph(version: 1, nodes: {
+///     "base": Grid(cells: [8, 8], size: [8, 8]),
+///     "height": EvaluateField(mesh: "base", value: "sin(x) * cos(y)"),
+///     "out": ColorByField(mesh: "base", field: "height", low: -1, high: 1),
+/// })
+/// ```
+#[derive(Inputs)]
+pub(crate) struct ColorByField {
+    /// Mesh to colour.
+    mesh: Arc<Mesh>,
+    /// One number per vertex or face of the mesh.
+    field: Arc<Field>,
+    /// The number shown dark blue; left out, the field's smallest.
+    low: Option<f64>,
+    /// The number shown yellow; left out, the field's largest.
+    high: Option<f64>,
+}
+
+/// The coloured mesh and what its colours mean.
+#[derive(Outputs)]
+pub(crate) struct Colored {
+    /// The mesh with the attribute `color`.
+    mesh: Arc<Mesh>,
+    /// The number shown dark blue.
+    low: f64,
+    /// The number shown yellow.
+    high: f64,
+}
+
+impl Node for ColorByField {
+    type Output = Colored;
+
+    fn eval(self, _: &EvalCx<'_>) -> Result<Self::Output, NodeError> {
+        self.field.check(&self.mesh, self.field.domain())?;
+        let values = self.field.values();
+        let range = values
+            .iter()
+            .fold(None, |range: Option<(f64, f64)>, &value| {
+                let (low, high) = range.unwrap_or((value, value));
+                Some((low.min(value), high.max(value)))
+            });
+        let (least, most) = range.unwrap_or_default();
+        let (low, high) = (self.low.unwrap_or(least), self.high.unwrap_or(most));
+        if low > high {
+            return Err(
+                NodeError::new(format!("`low` is {low}, above `high`, {high}"))
+                    .with_help("exchange them, or leave one out")
+                    .at_input("low"),
+            );
+        }
+        // A field that is the same everywhere takes the middle of the map.
+        let along = |value: f64| {
+            if high > low {
+                (value - low) / (high - low)
+            } else {
+                0.5
+            }
+        };
+        let colors = values.iter().map(|&value| viridis(along(value))).collect();
+        let values = AttributeValues::Vector3(colors);
+        let attribute = Attribute::new("color", self.field.domain(), values);
+        let mesh = Arc::new(Mesh::clone(&self.mesh).with_attribute(attribute)?);
+        Ok(Colored { mesh, low, high })
+    }
+}

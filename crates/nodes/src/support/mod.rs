@@ -1,0 +1,4 @@
+//! What several nodes share: no node by itself.
+
+pub(crate) mod choice_of_components;
+pub(crate) mod elements;
