@@ -1,0 +1,293 @@
+//! `info`: what is in a mesh file.
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use clap::Args;
+use serde_json::{Value as Json, json};
+use tessgraph_geometry::Monitor;
+use tessgraph_geometry::measure::{MeshMeasures, measure_mesh};
+use tessgraph_graph::world::{DiskWorld, World as _};
+use tessgraph_graph::{Diagnostic, Label, Severity, Source, six_digits};
+use tessgraph_io::{Format, IoError, Loaded, Place, ReadOptions, ResolveError};
+
+use super::{Context, FAILED, OK, USAGE};
+use crate::diagnostics::{print, without_place};
+use crate::graph_file::read_plain;
+use crate::interrupt::{self, INTERRUPTED};
+use crate::json::{number, pretty};
+use crate::memory::{default_limit, set_limit};
+use crate::text::{Align, count, printable, table};
+
+/// Tells what is in a mesh file
+#[derive(Debug, Args)]
+pub(crate) struct InfoArgs {
+    /// The mesh file: OBJ, glTF, GLB, STL or PLY
+    mesh: PathBuf,
+    /// Gives the figures as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// Stops reading when the user asks for it.
+struct UntilInterrupt;
+
+impl Monitor for UntilInterrupt {
+    fn cancelled(&self) -> bool {
+        interrupt::is_requested()
+    }
+}
+
+/// Carries the command out.
+pub(crate) fn info(args: &InfoArgs, cx: &mut Context<'_, '_>) -> u8 {
+    let name = args.mesh.to_string_lossy();
+    let Some(format) = Format::from_name(&name) else {
+        let message = format!("`{}` is no mesh file by its extension", printable(&name));
+        let help = "files end in .obj, .gltf, .glb, .stl or .ply".to_owned();
+        return cx.fail(USAGE, "unknown_format", message, Some(help));
+    };
+    let loaded = match load(&args.mesh, format) {
+        Ok(loaded) => loaded,
+        Err(None) => return INTERRUPTED,
+        Err(Some(diagnostic)) => {
+            print(cx.console, &[*diagnostic]);
+            return FAILED;
+        }
+    };
+    let warnings: Vec<Diagnostic> = loaded
+        .warnings
+        .iter()
+        .map(|text| warning(&name, text))
+        .collect();
+    print(cx.console, &warnings);
+    let measures = measure_mesh(&loaded.mesh);
+    let text = if args.json {
+        pretty(&measures_json(&measures))
+    } else {
+        page(&measures, format)
+    };
+    cx.console.data(&text);
+    OK
+}
+
+/// The mesh, or why it cannot be had; `None` when the user asked to stop.
+fn load(path: &Path, format: Format) -> Result<Loaded, Option<Box<Diagnostic>>> {
+    let shown = path.to_string_lossy();
+    let unreadable = |reason: String| {
+        let message = format!("cannot read the mesh: {reason}");
+        Some(Box::new(without_place("unreadable", &shown, message)))
+    };
+    let limit = default_limit();
+    set_limit(limit);
+    let bytes = read_plain(path, limit / 2).map_err(&unreadable)?;
+    let folder = path
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty());
+    let world = DiskWorld::new(folder.unwrap_or(Path::new(".")), &[])
+        .map_err(|error| unreadable(error.to_string()))?;
+    let mut resolve = |relative: &str| {
+        world
+            .read(relative)
+            .map_err(|error| ResolveError::Failed(error.reason))
+    };
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let options = ReadOptions {
+        memory_limit: limit,
+        ..ReadOptions::default()
+    };
+    tessgraph_io::read(
+        format,
+        &name,
+        &bytes,
+        &mut resolve,
+        &options,
+        &UntilInterrupt,
+    )
+    .map_err(|error| fault(&error, path, &name, &bytes).map(Box::new))
+}
+
+/// A reader's fault, shown at its line where the file has lines.
+fn fault(error: &IoError, path: &Path, name: &str, bytes: &[u8]) -> Option<Diagnostic> {
+    let fault = error.fault()?;
+    let file = path.with_file_name(&fault.file);
+    let file = if fault.file == name { path } else { &file };
+    let file = file.to_string_lossy();
+    let mut diagnostic = match fault.place {
+        Place::Line { line, column } if fault.file == name => {
+            let text = String::from_utf8_lossy(bytes);
+            match offset(&text, line, column) {
+                Some(at) => {
+                    let mut diagnostic = without_place("bad_mesh", &file, &fault.cause);
+                    diagnostic.source = Arc::new(Source::new(file.as_ref(), text.as_ref()));
+                    diagnostic.labels = vec![Label {
+                        span: at..at + 1,
+                        message: String::new(),
+                    }];
+                    diagnostic
+                }
+                None => without_place("bad_mesh", &format!("{file}{}", fault.place), &fault.cause),
+            }
+        }
+        _ => without_place("bad_mesh", &format!("{file}{}", fault.place), &fault.cause),
+    };
+    diagnostic.help = Some(fault.help.clone());
+    Some(diagnostic)
+}
+
+/// The byte at a line and a column, both counted from 1.
+fn offset(text: &str, line: usize, column: usize) -> Option<usize> {
+    let mut start = 0;
+    for _ in 1..line {
+        start += text[start..].find('\n')? + 1;
+    }
+    let length = text[start..].find('\n').unwrap_or(text.len() - start);
+    let (at, _) = text[start..start + length]
+        .char_indices()
+        .nth(column.checked_sub(1)?)?;
+    Some(start + at)
+}
+
+fn warning(name: &str, text: &str) -> Diagnostic {
+    let mut diagnostic = without_place("mesh_warning", name, text);
+    diagnostic.severity = Severity::Warning;
+    diagnostic
+}
+
+/// The documented object: counts as written in the file, lengths as in the file
+/// (metres for glTF).
+fn measures_json(measures: &MeshMeasures) -> Json {
+    let point = |point: [f64; 3]| Json::Array(point.map(number).to_vec());
+    let bounds = measures
+        .bounds
+        .map(|(low, high)| json!([point(low.into()), point(high.into())]));
+    json!({
+        "vertices": measures.vertices,
+        "edges": measures.edges,
+        "faces": measures.faces,
+        "triangles": measures.triangles,
+        "euler": measures.euler,
+        "components": measures.components,
+        "boundary_edges": measures.boundary_edges,
+        "boundary_loops": measures.boundary_loops,
+        "nonmanifold_edges": measures.nonmanifold_edges,
+        "isolated_vertices": measures.isolated_vertices,
+        "degenerate_faces": measures.degenerate_faces,
+        "bounds": bounds,
+        "area": number(measures.area),
+        "volume": measures.volume.map_or(Json::Null, number),
+        "intersections": Json::Null,
+    })
+}
+
+/// The figures for people, with what they mean.
+fn page(measures: &MeshMeasures, format: Format) -> String {
+    let unit = if format.is_metric() { " m" } else { "" };
+    let row = |name: &str, value: String| vec![name.to_owned(), value];
+    let mut rows = vec![
+        row("vertices", measures.vertices.to_string()),
+        row("edges", measures.edges.to_string()),
+        row("faces", measures.faces.to_string()),
+        row("triangles", measures.triangles.to_string()),
+        row("euler", measures.euler.to_string()),
+        row("components", measures.components.to_string()),
+    ];
+    if let Some((low, high)) = measures.bounds {
+        let size = (high - low).to_array().map(six_digits).join(" x ");
+        rows.push(row("size", format!("{size}{unit}")));
+        for (name, point) in [("lowest", low), ("highest", high)] {
+            rows.push(row(
+                name,
+                format!("({})", point.to_array().map(six_digits).join(", ")),
+            ));
+        }
+    }
+    let power = |exponent: &str| {
+        if unit.is_empty() {
+            String::new()
+        } else {
+            format!("{unit}{exponent}")
+        }
+    };
+    rows.push(row(
+        "area",
+        format!("{}{}", six_digits(measures.area), power("²")),
+    ));
+    if let Some(volume) = measures.volume {
+        rows.push(row(
+            "volume",
+            format!("{}{}", six_digits(volume), power("³")),
+        ));
+    }
+    let mut text = table(&rows, &[Align::Left, Align::Left]);
+    text.push('\n');
+    for line in verdicts(measures) {
+        let _ = writeln!(text, "{line}");
+    }
+    text
+}
+
+/// What the figures say about the mesh's soundness, the main thing first.
+fn verdicts(measures: &MeshMeasures) -> Vec<String> {
+    let mut lines = Vec::new();
+    if measures.faces == 0 {
+        lines.push("no faces: a point cloud or an empty mesh".to_owned());
+    } else if measures.boundary_edges > 0 {
+        let (loops, edges) = (
+            count(measures.boundary_loops, "boundary loop"),
+            count(measures.boundary_edges, "edge"),
+        );
+        lines.push(format!("open: {loops} of {edges}; it encloses no volume"));
+    } else if let Some(volume) = measures.volume {
+        let sense = if volume < 0.0 {
+            ", but turned inside out: its faces point inwards"
+        } else {
+            ""
+        };
+        lines.push(format!("closed{sense}"));
+    }
+    let problems = [
+        (
+            measures.nonmanifold_edges,
+            "edge",
+            "with more than two faces: not a manifold",
+        ),
+        (
+            measures.nonmanifold_vertices,
+            "vertex",
+            "where separate faces touch: not a manifold",
+        ),
+        (
+            measures.inconsistent_edges,
+            "edge",
+            "between faces of opposite sense: some are flipped",
+        ),
+        (measures.degenerate_faces, "face", "without area"),
+        (measures.duplicate_faces, "face", "that repeat another"),
+        (measures.isolated_vertices, "vertex", "of no face"),
+    ];
+    for (number, noun, what) in problems {
+        match (number, noun) {
+            (0, _) => {}
+            (1, _) => lines.push(format!("1 {noun} {what}")),
+            (_, "vertex") => lines.push(format!("{number} vertices {what}")),
+            _ => lines.push(format!("{number} {noun}s {what}")),
+        }
+    }
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_and_columns_become_bytes() {
+        let text = "é\nab é x\n";
+        assert_eq!(offset(text, 1, 1), Some(0));
+        assert_eq!(offset(text, 2, 6), Some(text.find('x').unwrap()));
+        assert_eq!(offset(text, 2, 7), None);
+        assert_eq!(offset(text, 4, 1), None);
+        assert_eq!(offset(text, 1, 0), None);
+    }
+}

@@ -1,0 +1,125 @@
+//! A graph file on disk, read and checked.
+
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::{Path, PathBuf};
+
+use tessgraph_graph::node::NodeSpec;
+use tessgraph_graph::{Diagnostic, LoadOptions, Plan};
+
+use crate::diagnostics::without_place;
+
+/// A graph written by people is some kilobytes; more than this is a mistake.
+const LARGEST_GRAPH: u64 = 64 << 20;
+
+/// A checked graph and the folder its files are named from.
+pub(crate) struct GraphFile {
+    /// The graph.
+    pub(crate) plan: Plan,
+    /// Its path as given.
+    pub(crate) path: PathBuf,
+    /// The folder it is in.
+    pub(crate) folder: PathBuf,
+}
+
+impl GraphFile {
+    /// Reads and checks the graph at `path`, with parameters set as asked.
+    ///
+    /// # Errors
+    /// Everything that is wrong with it, in the order of the text.
+    pub(crate) fn load(
+        path: &Path,
+        registry: &'static [NodeSpec],
+        set: &[(String, String)],
+    ) -> Result<Self, Vec<Diagnostic>> {
+        let name = path.to_string_lossy();
+        let bytes = read_plain(path, LARGEST_GRAPH).map_err(|reason| {
+            let mut diagnostic = without_place(
+                "unreadable",
+                &name,
+                format!("cannot read the graph: {reason}"),
+            );
+            diagnostic.help = path
+                .is_dir()
+                .then(|| "name the graph file inside it".to_owned());
+            vec![diagnostic]
+        })?;
+        let options = LoadOptions { set: set.to_vec() };
+        let plan = tessgraph_graph::load(&name, &bytes, registry, &options)?;
+        let folder = match path.parent() {
+            Some(folder) if !folder.as_os_str().is_empty() => folder.to_path_buf(),
+            _ => PathBuf::from("."),
+        };
+        Ok(Self {
+            plan,
+            path: path.to_path_buf(),
+            folder,
+        })
+    }
+}
+
+/// The content of a plain file of at most `largest` bytes.
+///
+/// # Errors
+/// In words. Pipes and devices are refused: reading them might never end.
+pub(crate) fn read_plain(path: &Path, largest: u64) -> Result<Vec<u8>, String> {
+    let words = |error: io::Error| match error.kind() {
+        io::ErrorKind::NotFound => "there is no such file".to_owned(),
+        io::ErrorKind::PermissionDenied => "permission denied".to_owned(),
+        _ => error.to_string(),
+    };
+    // Asked before opening: opening a pipe waits for its writer.
+    let found = path.metadata().map_err(words)?;
+    if found.is_dir() {
+        return Err("it is a folder".to_owned());
+    }
+    if !found.is_file() {
+        return Err("it is not a plain file".to_owned());
+    }
+    let too_large = || format!("it is larger than {}", crate::text::bytes_text(largest));
+    if found.len() > largest {
+        return Err(too_large());
+    }
+    let file = File::open(path).map_err(words)?;
+    let mut bytes = Vec::new();
+    // One byte more, so that a file that grows while it is read is noticed.
+    let read = file
+        .take(largest.saturating_add(1))
+        .read_to_end(&mut bytes)
+        .map_err(words)?;
+    if read as u64 > largest {
+        Err(too_large())
+    } else {
+        Ok(bytes)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_plain_files_of_some_size_are_read() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("f");
+        std::fs::write(&file, b"12345").unwrap();
+        assert_eq!(read_plain(&file, 5), Ok(b"12345".to_vec()));
+        assert!(
+            read_plain(&file, 4)
+                .unwrap_err()
+                .contains("larger than 4 B")
+        );
+        assert!(read_plain(folder.path(), 9).unwrap_err().contains("folder"));
+        assert!(
+            read_plain(&folder.path().join("g"), 9)
+                .unwrap_err()
+                .contains("no such file")
+        );
+        #[cfg(unix)]
+        assert!(
+            read_plain(Path::new("/dev/zero"), 9)
+                .unwrap_err()
+                .contains("not a plain file")
+        );
+    }
+}

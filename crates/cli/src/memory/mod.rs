@@ -1,0 +1,121 @@
+//! How much memory a run may take.
+
+mod guard;
+
+pub use guard::MemoryGuard;
+pub(crate) use guard::set_limit;
+
+/// What is assumed where the system does not tell.
+const FALLBACK: u64 = 8 << 30;
+
+/// The default limit: the least of 3/4 of the machine's memory, the process's
+/// address space limit (`ulimit -v`) and the control group's limit.
+pub(crate) fn default_limit() -> u64 {
+    let file = |path: &str| {
+        std::fs::File::open(path)
+            .and_then(std::io::read_to_string)
+            .ok()
+    };
+    let total = file("/proc/meminfo").as_deref().and_then(total_memory);
+    let space = file("/proc/self/limits").as_deref().and_then(address_space);
+    let group = [
+        "/sys/fs/cgroup/memory.max",
+        "/sys/fs/cgroup/memory/memory.limit_in_bytes",
+    ];
+    let group = group
+        .iter()
+        .filter_map(|path| file(path)?.trim().parse().ok())
+        .min();
+    let total = total.map(|bytes| bytes / 4 * 3);
+    [total, space, group]
+        .into_iter()
+        .flatten()
+        .min()
+        .unwrap_or(FALLBACK)
+}
+
+/// Bytes from "MemTotal:       16384 kB".
+fn total_memory(meminfo: &str) -> Option<u64> {
+    let line = meminfo
+        .lines()
+        .find_map(|line| line.strip_prefix("MemTotal:"))?;
+    let kibibytes: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
+    Some(kibibytes * 1024)
+}
+
+/// Bytes from "Max address space  500000000  unlimited  bytes".
+fn address_space(limits: &str) -> Option<u64> {
+    let line = limits
+        .lines()
+        .find_map(|line| line.strip_prefix("Max address space"))?;
+    line.split_whitespace().next()?.parse().ok()
+}
+
+/// Reads "500000000", "512MB", "1.5 GiB", "2G": B, kB, MB, GB, TB are powers of
+/// 1000; KiB, MiB, GiB, TiB, and K, M, G, T alone, powers of 1024.
+///
+/// # Errors
+/// In words, when it is no such size.
+pub(crate) fn parse_size(text: &str) -> Result<u64, String> {
+    let text = text.trim();
+    let split = text
+        .find(|c: char| !c.is_ascii_digit() && c != '.')
+        .unwrap_or(text.len());
+    let (number, unit) = text.split_at(split);
+    let unit = unit.trim().to_ascii_lowercase();
+    let (base, prefix): (f64, &str) = match unit.strip_suffix("ib") {
+        Some(prefix) => (1024.0, prefix),
+        None => match unit.strip_suffix('b') {
+            Some(prefix) => (1000.0, prefix),
+            None => (1024.0, unit.as_str()),
+        },
+    };
+    let factor = match prefix {
+        "" => 1.0,
+        "k" => base,
+        "m" => base * base,
+        "g" => base * base * base,
+        "t" => base * base * base * base,
+        _ => return Err(format!("`{unit}` is no unit of bytes; write 2GB or 512MiB")),
+    };
+    match number.parse::<f64>() {
+        Ok(number) if number > 0.0 && number * factor >= 1.0 => Ok((number * factor) as u64),
+        _ => Err("not a size above 0; write 2GB or 512MiB".to_owned()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_are_read() {
+        for (text, bytes) in [
+            ("500000000", 500_000_000),
+            ("1 kB", 1000),
+            ("2GB", 2_000_000_000),
+            ("512MiB", 512 << 20),
+            ("1.5g", 3 << 29),
+            ("7b", 7),
+        ] {
+            assert_eq!(parse_size(text), Ok(bytes), "{text}");
+        }
+        for text in ["", "-1", "0", "1 apple", "1e9", "GB", "0.1b", "1..2"] {
+            assert!(parse_size(text).is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn the_systems_tables_are_read() {
+        assert_eq!(
+            total_memory("MemTotal:       16 kB\nMemFree: 1 kB\n"),
+            Some(16 << 10)
+        );
+        let limits = "Limit   Soft Limit   Hard Limit   Units\n\
+                      Max address space         512000000            unlimited            bytes\n";
+        assert_eq!(address_space(limits), Some(512_000_000));
+        let unlimited = "Max address space         unlimited            unlimited            bytes";
+        assert_eq!(address_space(unlimited), None);
+        assert!(default_limit() > 0);
+    }
+}
