@@ -1,0 +1,153 @@
+//! One case: its files, the graph that asks for the same, and the verdict.
+
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+use tessgraph_geometry::{Mesh, Unmonitored, weld_vertices};
+use tessgraph_io::{Format, ReadOptions, no_files};
+
+use super::settings::{self, Request};
+use super::{compare, even, patch};
+use crate::support::{self, Ran};
+
+pub(super) struct Case {
+    pub(super) name: String,
+    folder: PathBuf,
+}
+
+/// What became of a case.
+pub(super) enum Verdict {
+    /// Equal to the add-on's result.
+    Reproduced,
+    /// Equal once the vertices that the add-on's cut leaves twice are welded.
+    ReproducedWelded,
+    /// The add-on failed or gave no finite result; ours is valid. Says why.
+    Beaten(String),
+    /// Asks for something that has no counterpart; names the keys.
+    Refused(Vec<String>),
+    /// Should agree and does not.
+    Differs(String),
+}
+
+impl fmt::Display for Verdict {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Reproduced => f.write_str("reproduced"),
+            Self::ReproducedWelded => f.write_str(
+                "reproduced, after welding both at 1e-6: the add-on's cut leaves vertices twice \
+                 and a face without area",
+            ),
+            Self::Beaten(why) => write!(f, "beaten: {why}"),
+            Self::Refused(keys) => write!(f, "refused: {}", keys.join(", ")),
+            Self::Differs(how) => write!(f, "DIFFERS: {how}"),
+        }
+    }
+}
+
+impl Case {
+    /// The cases in a folder, by name.
+    pub(super) fn all_in(folder: &Path) -> Vec<Self> {
+        let Ok(entries) = std::fs::read_dir(folder) else {
+            return Vec::new();
+        };
+        let paths = entries.filter_map(|entry| Some(entry.ok()?.path()));
+        let mut cases: Vec<_> = paths
+            .filter(|path| path.join("settings.json").is_file())
+            .map(|folder| {
+                let name = folder.file_name().expect("folders have names");
+                Self {
+                    name: name.to_string_lossy().into_owned(),
+                    folder,
+                }
+            })
+            .collect();
+        cases.sort_by(|a, b| a.name.cmp(&b.name));
+        cases
+    }
+
+    pub(super) fn verdict(&self) -> Verdict {
+        let settings = support::text_of(&self.folder.join("settings.json"));
+        let has = |name: &str| self.folder.join(name).is_file();
+        match settings::graph(&settings, has("weights.csv")) {
+            Request::Refused(keys) => Verdict::Refused(keys),
+            Request::Graph { text, clipped } => self.compare(&text, clipped),
+        }
+    }
+
+    fn compare(&self, graph: &str, clipped: bool) -> Verdict {
+        let plan = match support::try_load(&self.name, graph) {
+            Ok(plan) => plan,
+            Err(found) => return Verdict::Differs(format!("{}\n{graph}", support::shown(&found))),
+        };
+        let ran = Ran::run(plan, &support::world_of(&self.folder));
+        if !ran.evaluation.is_ok() {
+            let found = support::shown(&ran.evaluation.diagnostics);
+            if found.contains("SplitIntoQuads") {
+                return Verdict::Refused(vec!["fill_mode (QUAD on n-gons)".to_owned()]);
+            }
+            return Verdict::Differs(found);
+        }
+        let ours = ran.mesh("result");
+        match self.reference() {
+            Ok(theirs) if graph.contains("PerVertex") => even::judge(&ran, &theirs),
+            Ok(theirs) if self.folder.join("base_eval.obj").is_file() => {
+                let blender = self.read("base_eval.obj").expect("a subdivided base");
+                patch::judge(&ran, &blender, &theirs)
+            }
+            Ok(theirs) => match difference(&ours, &theirs, clipped) {
+                None if clipped => Verdict::ReproducedWelded,
+                None => Verdict::Reproduced,
+                Some(difference) => Verdict::Differs(difference),
+            },
+            // A mesh of ours is finite and valid by construction.
+            Err(why) => Verdict::Beaten(why),
+        }
+    }
+
+    /// What the add-on made; an error if it crashed or wrote no finite mesh.
+    fn reference(&self) -> Result<Mesh, String> {
+        let error = self.folder.join("ERROR.txt");
+        if error.is_file() {
+            let text = support::text_of(&error);
+            return Err(format!(
+                "the add-on failed: {}",
+                text.lines().next_back().unwrap_or("")
+            ));
+        }
+        if support::text_of(&self.folder.join("tissue.obj")).contains("nan") {
+            return Err("the add-on wrote NaN".to_owned());
+        }
+        self.read("tissue.obj")
+    }
+
+    /// A mesh of the case's folder.
+    fn read(&self, name: &str) -> Result<Mesh, String> {
+        let text = support::text_of(&self.folder.join(name));
+        let options = ReadOptions::default();
+        let loaded = tessgraph_io::read(
+            Format::Obj,
+            name,
+            text.as_bytes(),
+            &mut no_files,
+            &options,
+            &Unmonitored,
+        );
+        loaded
+            .map(|loaded| loaded.mesh)
+            .map_err(|error| error.to_string())
+    }
+}
+
+/// How the two differ. Where the component was cut the add-on leaves coincident
+/// vertices and faces without area beside the cut; both sides are welded first.
+fn difference(ours: &Mesh, theirs: &Mesh, clipped: bool) -> Option<String> {
+    if !clipped {
+        return compare::difference(ours, theirs, 1e-5);
+    }
+    let welded = |mesh: &Mesh| {
+        weld_vertices(mesh, 1e-6, &Unmonitored)
+            .expect("the distance is fine")
+            .mesh
+    };
+    compare::difference(&welded(ours), &welded(theirs), 1e-5)
+}
