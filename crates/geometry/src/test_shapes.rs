@@ -98,10 +98,10 @@ pub(crate) fn renumbered(mesh: &Mesh, names: &[u32]) -> Mesh {
     Mesh::from_faces(positions, &faces).unwrap()
 }
 
-/// A file of the reference cases beside the project, as a mesh; says so aloud
+/// A file of the recorded cases in tests/peer, as a mesh; says so aloud
 /// and gives `None` where they are not there.
 pub(crate) fn case(path: &str) -> Option<Mesh> {
-    let root = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared/peer/tissue/cases");
+    let root = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../tests/peer/cases");
     #[expect(clippy::disallowed_methods, reason = "a test reads its reference case")]
     let text = match std::fs::read_to_string(root.join(path)) {
         Ok(text) => text,

@@ -15,7 +15,7 @@ pub(crate) struct PeerCase {
 /// The case of that name, or `None`, said aloud, where the cases are missing.
 pub(crate) fn peer_case(name: &str) -> Option<PeerCase> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let folder = root.join("../../../shared/peer/tissue/cases").join(name);
+    let folder = root.join("../../tests/peer/cases").join(name);
     if folder.is_dir() {
         return Some(PeerCase { folder });
     }
