@@ -1,11 +1,10 @@
 //! Shapes and files for this crate's tests.
 
-use std::path::PathBuf;
-
 use glam::DVec3;
 
 use crate::math::{PI, TAU, cos, sin};
 use crate::normals::{NormalWeights, vertex_normals};
+use crate::test_support::peer_case;
 use crate::{DirectionSource, Directions, Mesh, Unmonitored};
 
 /// A quad grid of `nx` by `ny` cells over the unit square, placed by `f(x, y)`.
@@ -98,34 +97,9 @@ pub(crate) fn renumbered(mesh: &Mesh, names: &[u32]) -> Mesh {
     Mesh::from_faces(positions, &faces).unwrap()
 }
 
-/// A file of the recorded cases in tests/peer, as a mesh; says so aloud
-/// and gives `None` where they are not there.
+/// A file of the recorded cases in tests/peer, as a mesh; `None`, said aloud,
+/// where they are not there.
 pub(crate) fn case(path: &str) -> Option<Mesh> {
-    let root = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../tests/peer/cases");
-    #[expect(clippy::disallowed_methods, reason = "a test reads its reference case")]
-    let text = match std::fs::read_to_string(root.join(path)) {
-        Ok(text) => text,
-        Err(error) => {
-            println!("skipped: the reference case {path} is not here: {error}");
-            return None;
-        }
-    };
-    let mut positions = Vec::new();
-    let mut faces: Vec<Vec<u32>> = Vec::new();
-    for line in text.lines() {
-        let mut words = line.split_whitespace();
-        match words.next() {
-            Some("v") => {
-                let numbers: Vec<f64> = words.map(|word| word.parse().unwrap()).collect();
-                positions.push([numbers[0], numbers[1], numbers[2]]);
-            }
-            Some("f") => faces.push(
-                words
-                    .map(|word| word.split('/').next().unwrap().parse::<u32>().unwrap() - 1)
-                    .collect(),
-            ),
-            _ => {}
-        }
-    }
-    Some(Mesh::from_faces(positions, &faces).unwrap())
+    let (folder, file) = path.split_once('/').unwrap();
+    Some(peer_case(folder)?.mesh(file.trim_end_matches(".obj")))
 }

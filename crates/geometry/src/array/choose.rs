@@ -208,28 +208,14 @@ fn is_border(topology: &Topology, face: usize, k: usize) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Domain, Quantity};
+    use crate::{Domain, Quantity, test_support};
 
     fn field(values: &[f64]) -> Field {
         Field::new(Domain::Face, Quantity::Number, values.to_vec()).unwrap()
     }
 
     fn grid(nx: u32, ny: u32) -> Mesh {
-        let vertex = |i: u32, j: u32| j * (nx + 1) + i;
-        let places =
-            (0..=ny).flat_map(|j| (0..=nx).map(move |i| [f64::from(i), f64::from(j), 0.0]));
-        let faces: Vec<[u32; 4]> = (0..ny)
-            .flat_map(|j| (0..nx).map(move |i| (i, j)))
-            .map(|(i, j)| {
-                [
-                    vertex(i, j),
-                    vertex(i + 1, j),
-                    vertex(i + 1, j + 1),
-                    vertex(i, j + 1),
-                ]
-            })
-            .collect();
-        Mesh::from_faces(places.collect(), &faces).unwrap()
+        test_support::grid(nx, ny, |x, y| [x, y, 0.0])
     }
 
     #[test]
