@@ -1,83 +1,11 @@
 //! The program as a user meets it.
 
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
-use std::sync::OnceLock;
+use std::process::Output;
 
 use serde_json::Value;
 
+use crate::support::program::{files, run, text, with_graphs};
 use crate::support::{text_of, workspace};
-
-/// The program, built once.
-fn program() -> &'static Path {
-    static PATH: OnceLock<PathBuf> = OnceLock::new();
-    PATH.get_or_init(|| {
-        let build = escargot::CargoBuild::new()
-            .package("tessgraph")
-            .bin("tessgraph");
-        let build = build.manifest_path(workspace().join("Cargo.toml"));
-        let built = build.run().expect("the program builds");
-        built.path().to_owned()
-    })
-}
-
-/// Runs the program with a cache of its own: never the user's, and empty.
-fn run(arguments: &[&str], folder: &Path) -> Output {
-    let cache = tempfile::tempdir().expect("a folder");
-    Command::new(program())
-        .args(arguments)
-        .current_dir(folder)
-        .env("TESSGRAPH_CACHE", cache.path())
-        .output()
-        .expect("the program runs")
-}
-
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8(bytes.to_vec()).expect("output is UTF-8")
-}
-
-/// A folder of its own with the shipped graphs.
-fn with_graphs() -> tempfile::TempDir {
-    let folder = tempfile::tempdir().expect("a folder");
-    copy(&workspace().join("graphs"), folder.path());
-    folder
-}
-
-fn copy(from: &Path, to: &Path) {
-    for entry in std::fs::read_dir(from).expect("a folder") {
-        let entry = entry.expect("an entry");
-        let target = to.join(entry.file_name());
-        if entry.file_name() == "out" {
-            continue;
-        }
-        if entry.path().is_dir() {
-            std::fs::create_dir(&target).expect("a folder");
-            copy(&entry.path(), &target);
-        } else {
-            std::fs::copy(entry.path(), target).expect("a file");
-        }
-    }
-}
-
-/// All files under a folder with their bytes, by relative path.
-fn files(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
-    let mut found = Vec::new();
-    let mut folders = vec![folder.to_owned()];
-    while let Some(next) = folders.pop() {
-        for entry in std::fs::read_dir(next).expect("a folder") {
-            let path = entry.expect("an entry").path();
-            if path.is_dir() {
-                folders.push(path);
-            } else {
-                #[allow(clippy::disallowed_methods, reason = "tests read what was written")]
-                let bytes = std::fs::read(&path).expect("a file");
-                found.push((path.strip_prefix(folder).expect("below").to_owned(), bytes));
-            }
-        }
-    }
-    found.sort();
-    found
-}
 
 #[test]
 fn the_main_job_writes_the_outputs_and_says_so() {

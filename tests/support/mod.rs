@@ -1,5 +1,7 @@
 //! What the tests share: running graphs in memory and looking at results.
 
+pub(crate) mod program;
+
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 

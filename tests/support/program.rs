@@ -1,0 +1,80 @@
+//! The program as a process of its own, and folders for it to work in.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use std::sync::OnceLock;
+
+use super::workspace;
+
+/// The program, built once.
+pub(crate) fn program() -> &'static Path {
+    static PATH: OnceLock<PathBuf> = OnceLock::new();
+    PATH.get_or_init(|| {
+        let build = escargot::CargoBuild::new()
+            .package("tessgraph")
+            .bin("tessgraph");
+        let build = build.manifest_path(workspace().join("Cargo.toml"));
+        let built = build.run().expect("the program builds");
+        built.path().to_owned()
+    })
+}
+
+/// Runs the program with a cache of its own: never the user's, and empty.
+pub(crate) fn run(arguments: &[&str], folder: &Path) -> Output {
+    let cache = tempfile::tempdir().expect("a folder");
+    Command::new(program())
+        .args(arguments)
+        .current_dir(folder)
+        .env("TESSGRAPH_CACHE", cache.path())
+        .output()
+        .expect("the program runs")
+}
+
+/// What a process printed.
+pub(crate) fn text(bytes: &[u8]) -> String {
+    String::from_utf8(bytes.to_vec()).expect("output is UTF-8")
+}
+
+/// A folder of its own with the shipped graphs.
+pub(crate) fn with_graphs() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().expect("a folder");
+    copy(&workspace().join("graphs"), folder.path());
+    folder
+}
+
+/// Copies a folder, without what was made in it.
+pub(crate) fn copy(from: &Path, to: &Path) {
+    for entry in std::fs::read_dir(from).expect("a folder") {
+        let entry = entry.expect("an entry");
+        let target = to.join(entry.file_name());
+        if entry.file_name() == "out" {
+            continue;
+        }
+        if entry.path().is_dir() {
+            std::fs::create_dir(&target).expect("a folder");
+            copy(&entry.path(), &target);
+        } else {
+            std::fs::copy(entry.path(), target).expect("a file");
+        }
+    }
+}
+
+/// All files under a folder with their bytes, by relative path.
+pub(crate) fn files(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
+    let mut found = Vec::new();
+    let mut folders = vec![folder.to_owned()];
+    while let Some(next) = folders.pop() {
+        for entry in std::fs::read_dir(next).expect("a folder") {
+            let path = entry.expect("an entry").path();
+            if path.is_dir() {
+                folders.push(path);
+            } else {
+                #[allow(clippy::disallowed_methods, reason = "tests read what was written")]
+                let bytes = std::fs::read(&path).expect("a file");
+                found.push((path.strip_prefix(folder).expect("below").to_owned(), bytes));
+            }
+        }
+    }
+    found.sort();
+    found
+}
