@@ -1,5 +1,8 @@
 //! The command line.
 
+use std::path::PathBuf;
+
+use clap::builder::{PathBufValueParser, TypedValueParser};
 use clap::{Parser, Subcommand};
 
 use crate::commands::cache::CacheArgs;
@@ -45,6 +48,11 @@ pub(crate) fn setting(text: &str) -> Result<Setting, String> {
         }
         _ => Err("write it as name=value".to_owned()),
     }
+}
+
+/// Reads the path of something that exists.
+pub(crate) fn existing() -> impl TypedValueParser<Value = PathBuf> {
+    PathBufValueParser::new().try_map(|path| path.canonicalize().map(|_| path))
 }
 
 #[cfg(test)]

@@ -5,9 +5,11 @@ use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 use tessgraph_graph::node::NodeSpec;
-use tessgraph_graph::{Diagnostic, LoadOptions, Plan};
+use tessgraph_graph::world::DiskWorld;
+use tessgraph_graph::{Diagnostic, LoadOptions, Plan, load_with};
 
 use crate::diagnostics::without_place;
+use crate::world::RecordingWorld;
 
 /// A graph written by people is some kilobytes; more than this is a mistake.
 const LARGEST_GRAPH: u64 = 64 << 20;
@@ -20,41 +22,69 @@ pub(crate) struct GraphFile {
     pub(crate) path: PathBuf,
     /// The folder it is in.
     pub(crate) folder: PathBuf,
+    /// The files it may read, with a memory of those that were read, included
+    /// graphs among them.
+    pub(crate) world: RecordingWorld,
+}
+
+/// What came of reading a graph file.
+pub(crate) struct Opened {
+    /// The graph, or everything that is wrong with it and the graphs it
+    /// includes.
+    pub(crate) file: Result<GraphFile, Vec<Diagnostic>>,
+    /// The graph file and all graphs it includes, as far as they were met, also
+    /// those that do not exist: what to look at for another result.
+    #[allow(dead_code, reason = "for watching a graph")]
+    pub(crate) sources: Vec<PathBuf>,
 }
 
 impl GraphFile {
-    /// Reads and checks the graph at `path`, with parameters set as asked.
-    ///
-    /// # Errors
-    /// Everything that is wrong with it, in the order of the text.
-    pub(crate) fn load(
+    /// Reads and checks the graph at `path`, with parameters set as asked. Files
+    /// outside its folder tree are read only below one of `allowed`.
+    pub(crate) fn open(
         path: &Path,
         registry: &'static [NodeSpec],
         set: &[(String, String)],
-    ) -> Result<Self, Vec<Diagnostic>> {
+        allowed: &[PathBuf],
+    ) -> Opened {
+        let failed = |diagnostics| Opened {
+            file: Err(diagnostics),
+            sources: vec![path.to_path_buf()],
+        };
         let name = path.to_string_lossy();
-        let bytes = read_plain(path, LARGEST_GRAPH).map_err(|reason| {
-            let mut diagnostic = without_place(
-                "unreadable",
-                &name,
-                format!("cannot read the graph: {reason}"),
-            );
+        let unreadable = |reason: String| {
+            let message = format!("cannot read the graph: {reason}");
+            let mut diagnostic = without_place("unreadable", &name, message);
             diagnostic.help = path
                 .is_dir()
                 .then(|| "name the graph file inside it".to_owned());
             vec![diagnostic]
-        })?;
-        let options = LoadOptions { set: set.to_vec() };
-        let plan = tessgraph_graph::load(&name, &bytes, registry, &options)?;
+        };
+        let bytes = match read_plain(path, LARGEST_GRAPH) {
+            Ok(bytes) => bytes,
+            Err(reason) => return failed(unreadable(reason)),
+        };
         let folder = match path.parent() {
             Some(folder) if !folder.as_os_str().is_empty() => folder.to_path_buf(),
             _ => PathBuf::from("."),
         };
-        Ok(Self {
+        let world = match DiskWorld::new(&folder, allowed) {
+            Ok(disk) => RecordingWorld::new(disk),
+            Err(error) => return failed(unreadable(error.to_string())),
+        };
+        let options = LoadOptions { set: set.to_vec() };
+        let loaded = load_with(&name, &bytes, registry, &options, &world);
+        let included = loaded.included.iter().map(|name| folder.join(name));
+        let sources = std::iter::once(path.to_path_buf())
+            .chain(included)
+            .collect();
+        let file = loaded.plan.map(|plan| Self {
             plan,
             path: path.to_path_buf(),
             folder,
-        })
+            world,
+        });
+        Opened { file, sources }
     }
 }
 

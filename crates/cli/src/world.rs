@@ -21,11 +21,12 @@ impl RecordingWorld {
         }
     }
 
-    /// All files that were read, links followed.
-    pub(crate) fn into_read(self) -> BTreeSet<PathBuf> {
+    /// All files that were read so far, links followed.
+    pub(crate) fn files_read(&self) -> BTreeSet<PathBuf> {
         self.read
-            .into_inner()
+            .lock()
             .unwrap_or_else(PoisonError::into_inner)
+            .clone()
     }
 }
 

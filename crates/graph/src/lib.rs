@@ -16,7 +16,7 @@ pub mod units;
 pub mod value;
 pub mod world;
 
-pub use check::{LoadOptions, load};
+pub use check::{LoadOptions, Loaded, load, load_with};
 pub use diagnostic::{Diagnostic, Label, Severity, Source};
 pub use eval::{Engine, Evaluation, NodeRun, Observer, Outcome, Silent};
 pub use node::{Args, EvalCx, Inputs, Node, NodeError, NodeSpec, Outputs};

@@ -14,6 +14,8 @@ use crate::value::Value;
 pub struct Plan {
     /// The text it was read from.
     pub source: Arc<Source>,
+    /// The files of included graphs: paths from the main graph's folder.
+    pub included: Vec<String>,
     /// The unit of every length in that text.
     pub units: Units,
     /// The parameters with the values they have in this run, in file order.

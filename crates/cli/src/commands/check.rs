@@ -7,7 +7,7 @@ use tessgraph_graph::Diagnostic;
 use tessgraph_graph::plan::PlanOutput;
 
 use super::{Context, FAILED, OK};
-use crate::args::{Setting, setting};
+use crate::args::{Setting, existing, setting};
 use crate::diagnostics::{error_count, lines, print};
 use crate::graph_file::GraphFile;
 use crate::outputs::{Folders, targets};
@@ -22,7 +22,7 @@ pub(crate) struct CheckArgs {
     #[arg(long, value_name = "NAME=VALUE", value_parser = setting)]
     set: Vec<Setting>,
     /// Files outside the graph's folder that may be used: a file or folder
-    #[arg(long, value_name = "PATH")]
+    #[arg(long, value_name = "PATH", value_parser = existing())]
     allow: Vec<PathBuf>,
     /// How errors are shown: for people on stderr, or as JSON lines on stdout
     #[arg(long, value_enum, value_name = "FORMAT", default_value_t = MessageFormat::Human)]
@@ -67,7 +67,7 @@ pub(crate) fn check(args: &CheckArgs, cx: &mut Context<'_, '_>) -> u8 {
 
 /// How many nodes and outputs the graph has.
 fn examine(args: &CheckArgs, cx: &Context<'_, '_>) -> Result<(usize, usize), Vec<Diagnostic>> {
-    let file = GraphFile::load(&args.graph, cx.registry, &args.set)?;
+    let file = GraphFile::open(&args.graph, cx.registry, &args.set, &args.allow).file?;
     let outputs: Vec<&PlanOutput> = file.plan.outputs.iter().collect();
     let folders = Folders {
         graph: &file.folder,

@@ -7,11 +7,10 @@ use clap::{Args, ValueEnum};
 use tessgraph_graph::eval::KeyChange;
 use tessgraph_graph::names::did_you_mean;
 use tessgraph_graph::plan::PlanOutput;
-use tessgraph_graph::world::DiskWorld;
 use tessgraph_graph::{Diagnostic, Engine, Evaluation, Plan};
 
 use super::{Context, FAILED, OK, USAGE};
-use crate::args::{Setting, setting};
+use crate::args::{Setting, existing, setting};
 use crate::diagnostics::{error_count, print, without_place};
 use crate::graph_file::GraphFile;
 use crate::interrupt::{self, INTERRUPTED};
@@ -20,7 +19,6 @@ use crate::outputs::{Folders, Target, WrittenOutput, targets, write};
 use crate::progress::Progress;
 use crate::report::{RunReport, human, json};
 use crate::text::{Align, printable, table};
-use crate::world::RecordingWorld;
 
 /// The share of the memory limit that kept results may take.
 const CACHE_SHARE: u64 = 4;
@@ -58,7 +56,7 @@ pub(crate) struct RunArgs {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
     /// A folder outside the graph's that may be read from and written to
-    #[arg(long, value_name = "PATH")]
+    #[arg(long, value_name = "PATH", value_parser = existing())]
     allow: Vec<PathBuf>,
     /// How much memory may be used, as 2GB or 512MiB
     #[arg(long, value_name = "SIZE", value_parser = parse_size)]
@@ -116,9 +114,11 @@ pub(crate) fn run(args: &RunArgs, cx: &mut Context<'_, '_>) -> u8 {
     let live = cx.console.is_live() && args.report == ReportFormat::Human;
     let (registry, cache) = (cx.registry, cx.cache.clone());
     let result = pool.install(|| {
-        let file = GraphFile::load(&args.graph, registry, &args.set).map_err(Stopped::Graph)?;
+        let file = GraphFile::open(&args.graph, registry, &args.set, &args.allow)
+            .file
+            .map_err(Stopped::Graph)?;
         let targets = settle(args, &file, registry)?;
-        make(args, &file, cache.as_deref(), &targets, live)
+        Ok(make(args, &file, cache.as_deref(), &targets, live))
     });
     let ms = start.elapsed().as_secs_f64() * 1000.0;
     match result {
@@ -187,25 +187,20 @@ fn make(
     cache: Option<&Path>,
     targets: &[Target],
     live: bool,
-) -> Result<Finished, Stopped> {
-    let plan = &file.plan;
-    let disk = DiskWorld::new(&file.folder, &args.allow).map_err(|error| Stopped::Usage {
-        message: format!("`--allow` names something that cannot be used: {error}"),
-        help: None,
-    })?;
-    let world = RecordingWorld::new(disk);
+) -> Finished {
+    let (plan, world) = (&file.plan, &file.world);
     let memory = args.max_memory.unwrap_or_else(default_limit);
     set_limit(memory);
     let engine = engine(args, cache, memory / CACHE_SHARE);
     let results: Vec<_> = targets.iter().map(|target| target.result).collect();
     let names = plan.nodes.iter().map(|node| node.name.clone()).collect();
     let progress = Progress::new(names);
-    let evaluation = progress.during(live, || engine.evaluate(plan, &results, &world, &progress));
+    let evaluation = progress.during(live, || engine.evaluate(plan, &results, world, &progress));
     // Also when nobody asks: the next run is compared with this one.
     let changes = engine.explain(&identity(&file.path), plan, &evaluation);
     let (mut outputs, mut diagnostics) = (Vec::new(), Vec::new());
     if !evaluation.cancelled {
-        let read = world.into_read();
+        let read = world.files_read();
         for target in targets {
             let Some(value) = evaluation.value(target.result) else {
                 continue;
@@ -219,13 +214,13 @@ fn make(
         }
     }
     engine.flush();
-    Ok(Finished {
+    Finished {
         evaluation,
         changes,
         cache_warning: engine.cache_warning(),
         outputs,
         diagnostics,
-    })
+    }
 }
 
 /// The engine the arguments ask for; `folder` keeps results unless they name

@@ -25,6 +25,7 @@ use crate::document::{self, Document, Problems};
 use crate::names::quoted;
 use crate::node::NodeSpec;
 use crate::plan::{Origin, Plan, PlanInput, PlanNode, PlanOutput, PlanParameter};
+use crate::world::{MemoryWorld, World};
 use scope::Scope;
 
 /// What the caller of [`load`] may change about a graph.
@@ -35,7 +36,18 @@ pub struct LoadOptions {
     pub set: Vec<(String, String)>,
 }
 
-/// Reads and checks a graph file; `name` is what its reader knows it by.
+/// What came of reading a graph and the graphs it includes.
+#[derive(Debug)]
+pub struct Loaded {
+    /// The plan, or all problems of all files.
+    pub plan: Result<Plan, Vec<Diagnostic>>,
+    /// The files of included graphs as far as they were met, also those that do
+    /// not exist: paths from the main graph's folder, each once.
+    pub included: Vec<String>,
+}
+
+/// Reads and checks a graph file that includes no other; `name` is what its
+/// reader knows it by.
 ///
 /// Cost: O(size of the file · log), without evaluating any node.
 ///
@@ -50,6 +62,29 @@ pub struct LoadOptions {
 /// assert_eq!(problems[0].code, "no_outputs");
 /// ```
 pub fn load(
+    name: &str,
+    bytes: &[u8],
+    registry: &'static [NodeSpec],
+    options: &LoadOptions,
+) -> Result<Plan, Vec<Diagnostic>> {
+    load_with(name, bytes, registry, options, &MemoryWorld::default()).plan
+}
+
+/// [`load`] for graphs that include others, which are read from `world`.
+pub fn load_with(
+    name: &str,
+    bytes: &[u8],
+    registry: &'static [NodeSpec],
+    options: &LoadOptions,
+    _world: &dyn World,
+) -> Loaded {
+    Loaded {
+        plan: plan(name, bytes, registry, options),
+        included: Vec::new(),
+    }
+}
+
+fn plan(
     name: &str,
     bytes: &[u8],
     registry: &'static [NodeSpec],
@@ -135,6 +170,7 @@ fn assemble(
     }
     Plan {
         source: Arc::clone(&document.source),
+        included: Vec::new(),
         units: document.units,
         parameters: parameters.collect(),
         nodes: nodes.into_iter().map(|(_, node)| node).collect(),
