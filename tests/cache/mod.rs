@@ -4,6 +4,7 @@ mod damage;
 mod edits;
 mod explain;
 mod folder;
+mod outputs;
 mod sharing;
 mod threads;
 
@@ -136,7 +137,7 @@ fn a_second_process_computes_nothing_and_loads_only_outputs() {
 struct Unchanged(Mutex<Vec<(ResultRef, Digest)>>);
 
 impl Observer for Unchanged {
-    fn needs(&self, result: ResultRef, digest: Digest) -> bool {
+    fn needs(&self, result: ResultRef, digest: Digest, _: Digest) -> bool {
         self.0.lock().expect("no panic").push((result, digest));
         false
     }
@@ -178,8 +179,8 @@ fn an_edit_loads_what_the_computed_nodes_take_and_nothing_else() {
     );
 }
 
-#[test]
-fn fifty_nodes_are_found_at_once() {
+/// A chain of fifty nodes.
+fn fifty_nodes(outputs: &str) -> String {
     let mut nodes = String::from("\"n0\": ReadMesh(path: \"cage.obj\"),\n");
     for index in 1..50 {
         nodes += &format!(
@@ -187,7 +188,12 @@ fn fifty_nodes_are_found_at_once() {
             index - 1
         );
     }
-    let text = format!("Graph(version: 1, nodes: {{{nodes}}}, outputs: {{\"o.obj\": \"n49\"}})");
+    format!("Graph(version: 1, nodes: {{{nodes}}}, outputs: {outputs})")
+}
+
+#[test]
+fn fifty_nodes_are_found_at_once() {
+    let text = fifty_nodes(r#"{"o.obj": "n49"}"#);
     let folder = tempfile::tempdir().expect("a folder");
     Run::outputs(&text, folder.path());
     let start = std::time::Instant::now();

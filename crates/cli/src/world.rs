@@ -1,16 +1,20 @@
 //! The files of a run, with a memory of which were read.
 
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use tessgraph_graph::world::{DiskWorld, FileError, World};
 
+/// Where the files lie that were read, links followed, and what they were asked
+/// for as.
+pub(crate) type ReadFiles = BTreeMap<PathBuf, String>;
+
 /// Files on disk; remembers where those lie that were read, so that no output
 /// replaces one of them.
 pub(crate) struct RecordingWorld {
     disk: DiskWorld,
-    read: Mutex<BTreeSet<PathBuf>>,
+    read: Mutex<ReadFiles>,
 }
 
 impl RecordingWorld {
@@ -21,8 +25,8 @@ impl RecordingWorld {
         }
     }
 
-    /// All files that were read so far, links followed.
-    pub(crate) fn files_read(&self) -> BTreeSet<PathBuf> {
+    /// All files that were read so far.
+    pub(crate) fn files_read(&self) -> ReadFiles {
         self.read
             .lock()
             .unwrap_or_else(PoisonError::into_inner)
@@ -36,7 +40,8 @@ impl World for RecordingWorld {
             self.read
                 .lock()
                 .unwrap_or_else(PoisonError::into_inner)
-                .insert(place);
+                .entry(place)
+                .or_insert_with(|| path.to_owned());
         }
         self.disk.read(path)
     }

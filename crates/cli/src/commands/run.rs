@@ -15,7 +15,7 @@ use crate::diagnostics::{error_count, print, without_place};
 use crate::graph_file::GraphFile;
 use crate::interrupt::{self, INTERRUPTED};
 use crate::memory::{default_limit, parse_size, set_limit};
-use crate::outputs::{Folders, Target, WrittenOutput, targets, write};
+use crate::outputs::{Folders, OutputObserver, Outputs, Target, WrittenOutput, targets};
 use crate::progress::Progress;
 use crate::report::{RunReport, human, json};
 use crate::text::{Align, printable, table};
@@ -195,24 +195,19 @@ fn make(
     let results: Vec<_> = targets.iter().map(|target| target.result).collect();
     let names = plan.nodes.iter().map(|node| node.name.clone()).collect();
     let progress = Progress::new(names);
-    let evaluation = progress.during(live, || engine.evaluate(plan, &results, world, &progress));
+    let outputs = Outputs::new(plan, targets, &engine);
+    let observer = OutputObserver {
+        inner: &progress,
+        outputs: &outputs,
+    };
+    let evaluation = progress.during(live, || engine.evaluate(plan, &results, world, &observer));
     // Also when nobody asks: the next run is compared with this one.
     let changes = engine.explain(&identity(&file.path), plan, &evaluation);
-    let (mut outputs, mut diagnostics) = (Vec::new(), Vec::new());
-    if !evaluation.cancelled {
-        let read = world.files_read();
-        for target in targets {
-            let Some(value) = evaluation.value(target.result) else {
-                continue;
-            };
-            let provenance = evaluation.provenance(target.result);
-            match write(plan, target, value, provenance, &read) {
-                Ok(written) => outputs.push(written),
-                Err(_) if interrupt::is_requested() => break,
-                Err(problem) => diagnostics.push(*problem),
-            }
-        }
-    }
+    let (outputs, diagnostics) = if evaluation.cancelled {
+        (Vec::new(), Vec::new())
+    } else {
+        outputs.write(&evaluation, &world.files_read())
+    };
     engine.flush();
     Finished {
         evaluation,

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use serde_json::{Map, Value as Json, json};
-use tessgraph_geometry::digest::Digest;
+use tessgraph_geometry::digest::{Digest, Hasher};
 use tessgraph_geometry::glam::DVec3;
 use tessgraph_geometry::{Attribute, AttributeValues, Domain, Mesh, Monitor, Quantity};
 use tessgraph_graph::{Plan, Units, Value};
@@ -17,6 +17,10 @@ use super::tables::{csv_text, json_text};
 use super::target::Target;
 use crate::interrupt;
 use crate::json::number;
+
+/// The first line of a material library: a file that begins otherwise is not
+/// ours to replace.
+pub(super) const LIBRARY_MARK: &[u8] = b"# written by tessgraph\n";
 
 /// The files of one output.
 pub(super) struct Encoded {
@@ -47,7 +51,7 @@ pub(super) fn encode(
     plan: &Plan,
     target: &Target,
     value: &Value,
-    provenance: Option<Digest>,
+    provenance: Digest,
 ) -> Result<Encoded, Failure> {
     let quantity = plan.result_spec(target.result).quantity;
     let text = match (target.format, value) {
@@ -73,12 +77,37 @@ pub(super) fn encode(
     })
 }
 
+/// What a target's bytes depend on: the value, how it is written, and for a GLB
+/// what it says of its origin.
+pub(super) fn made_from(plan: &Plan, target: &Target, value: Digest, provenance: Digest) -> Digest {
+    let quantity = plan.result_spec(target.result).quantity;
+    let mut hasher = Hasher::new();
+    hasher
+        .text(env!("CARGO_PKG_VERSION"))
+        .text(target.format.name())
+        .number(target.format.version().into())
+        .float(plan.units.metres())
+        .text(&quantity.to_string())
+        .digest(value);
+    if target.format == FileFormat::Mesh(Format::Glb) {
+        hasher
+            .digest(provenance)
+            .number(plan.parameters.len() as u64);
+        for parameter in &plan.parameters {
+            hasher
+                .text(&parameter.name)
+                .digest(parameter.value.digest());
+        }
+    }
+    hasher.finish()
+}
+
 fn encode_mesh(
     plan: &Plan,
     target: &Target,
     format: Format,
     mesh: &Mesh,
-    provenance: Option<Digest>,
+    provenance: Digest,
 ) -> Result<Encoded, Failure> {
     let scaled = if format.is_metric() {
         None
@@ -88,7 +117,10 @@ fn encode_mesh(
     let mesh = scaled.as_ref().unwrap_or(mesh);
     let monitor = &UntilInterrupt;
     let mut files = Vec::new();
-    let Written { bytes, warnings } = match format {
+    let Written {
+        bytes,
+        mut warnings,
+    } = match format {
         Format::Glb | Format::Gltf => {
             let name = target
                 .path
@@ -112,7 +144,8 @@ fn encode_mesh(
                 material_library: name.map(|name| name.to_string_lossy().into_owned()),
                 ..ObjOptions::default()
             };
-            files.extend(library.map(|path| (path, write_mtl(mesh))));
+            let materials = |path| (path, [LIBRARY_MARK, &write_mtl(mesh)].concat());
+            files.extend(library.map(materials));
             write_obj(mesh, &options, monitor)
         }
         Format::Stl => write_stl(mesh, &StlOptions::default(), monitor),
@@ -120,6 +153,9 @@ fn encode_mesh(
     }
     .map_err(failure)?;
     files.push((target.path.clone(), bytes));
+    if mesh.vertex_count() == 0 {
+        warnings.push("the mesh is empty: it has no vertices and no faces".to_owned());
+    }
     Ok(Encoded { files, warnings })
 }
 
@@ -170,7 +206,7 @@ fn in_units(mesh: &Mesh, units: Units) -> Result<Option<Mesh>, Failure> {
 
 /// What a file was made from: version, digest of the graph and its inputs, and
 /// the parameters as they were in this run.
-fn origin(plan: &Plan, provenance: Option<Digest>) -> Json {
+fn origin(plan: &Plan, provenance: Digest) -> Json {
     let parameters = plan.parameters.iter().map(|parameter| {
         let value = match &parameter.value {
             Value::Bool(value) => json!(value),
@@ -185,7 +221,7 @@ fn origin(plan: &Plan, provenance: Option<Digest>) -> Json {
     json!({
         "tessgraph": {
             "version": env!("CARGO_PKG_VERSION"),
-            "graph_digest": provenance.map(|digest| digest.to_string()),
+            "graph_digest": provenance.to_string(),
             "parameters": parameters.collect::<Map<_, _>>(),
         }
     })

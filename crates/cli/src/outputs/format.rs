@@ -29,6 +29,31 @@ impl FileFormat {
         }
     }
 
+    /// Its name in records of what was written.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Mesh(Format::Glb | Format::Gltf) => "glb",
+            Self::Mesh(Format::Obj) => "obj",
+            Self::Mesh(Format::Stl) => "stl",
+            Self::Mesh(Format::Ply) => "ply",
+            Self::Json => "json",
+            Self::Csv => "csv",
+        }
+    }
+
+    /// Raised whenever the same value is written as other bytes, so that files
+    /// of the version before are written again.
+    pub(crate) fn version(self) -> u32 {
+        match self {
+            Self::Mesh(Format::Glb | Format::Gltf) => 1,
+            Self::Mesh(Format::Obj) => 1,
+            Self::Mesh(Format::Stl) => 1,
+            Self::Mesh(Format::Ply) => 1,
+            Self::Json => 1,
+            Self::Csv => 1,
+        }
+    }
+
     /// Whether a value of this kind can be written.
     pub(crate) fn holds(self, kind: Kind) -> bool {
         match (self, kind) {

@@ -1,28 +1,37 @@
 //! Outputs: settled before a run, written after it.
 
+mod current;
 mod encode;
 mod format;
 mod tables;
 mod target;
 
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::Read as _;
 use std::path::{Path, PathBuf};
+use std::sync::Mutex;
 
-use tessgraph_geometry::digest::Digest;
-use tessgraph_graph::{Diagnostic, Plan, Value};
+use tessgraph_graph::eval::OutputRecord;
+use tessgraph_graph::{Diagnostic, Engine, Evaluation, Plan};
 
+pub(crate) use current::OutputObserver;
+#[cfg(test)]
+pub(crate) use format::FileFormat;
 pub(crate) use target::{Folders, Target, targets};
 
 use crate::atomic::write_if_changed;
+use crate::interrupt;
 use crate::places::is_same_file;
 use crate::text::printable;
-use encode::{Encoded, Failure, encode};
+use crate::world::ReadFiles;
+use encode::{Encoded, Failure, LIBRARY_MARK, encode, made_from};
 use target::onto_input;
 
-/// An output that was written, or was there already.
+/// A file of an output that was written, or was there already.
 #[derive(Debug, Clone)]
 pub(crate) struct WrittenOutput {
-    /// Its path as written in the graph.
+    /// Its path as written in the graph; a material library's is made of it.
     pub(crate) name: String,
     /// Its path for people: from where they are.
     pub(crate) shown: String,
@@ -34,53 +43,172 @@ pub(crate) struct WrittenOutput {
     pub(crate) lost: Vec<String>,
 }
 
-/// Writes a value to its place; `read` are the files that the run read.
-///
-/// # Errors
-/// When it cannot be written; whatever was at the place is then untouched.
-pub(crate) fn write(
-    plan: &Plan,
-    target: &Target,
-    value: &Value,
-    provenance: Option<Digest>,
-    read: &BTreeSet<PathBuf>,
-) -> Result<WrittenOutput, Box<Diagnostic>> {
-    let name = printable(&target.name);
-    let fail = |message: String| {
+/// The outputs of one run: which of them are still as an earlier run wrote
+/// them, and the way to write the others.
+pub(crate) struct Outputs<'a> {
+    plan: &'a Plan,
+    targets: &'a [Target],
+    engine: &'a Engine,
+    /// Records that the files were found to agree with, by the target's path.
+    current: Mutex<BTreeMap<PathBuf, OutputRecord>>,
+}
+
+impl<'a> Outputs<'a> {
+    pub(crate) fn new(plan: &'a Plan, targets: &'a [Target], engine: &'a Engine) -> Self {
+        Self {
+            plan,
+            targets,
+            engine,
+            current: Mutex::default(),
+        }
+    }
+
+    /// Writes everything that could be computed and is not there already;
+    /// `read` are the files that the run read. Stops where the user asks to.
+    pub(crate) fn write(
+        &self,
+        evaluation: &Evaluation,
+        read: &ReadFiles,
+    ) -> (Vec<WrittenOutput>, Vec<Diagnostic>) {
+        let (mut outputs, mut problems) = (Vec::new(), Vec::new());
+        for target in self.targets {
+            match self.write_one(target, evaluation, read) {
+                Ok(written) => outputs.extend(written),
+                Err(_) if interrupt::is_requested() => break,
+                Err(problem) => problems.push(*problem),
+            }
+        }
+        (outputs, problems)
+    }
+
+    /// Sees to one output; nothing if its value could not be computed. When it
+    /// cannot be written, whatever was at the place is untouched.
+    fn write_one(
+        &self,
+        target: &Target,
+        evaluation: &Evaluation,
+        read: &ReadFiles,
+    ) -> Result<Vec<WrittenOutput>, Box<Diagnostic>> {
+        let result = target.result;
+        let known = evaluation.digest(result).zip(evaluation.provenance(result));
+        let Some((digest, provenance)) = known else {
+            return Ok(Vec::new());
+        };
+        self.check_inputs(target, &target.path, read)?;
+        let made_from = made_from(self.plan, target, digest, provenance);
+        if let Some(record) = self.current_record(target, made_from) {
+            return Ok(current::found(target, &record));
+        }
+        let Some(value) = evaluation.value(result) else {
+            return Ok(Vec::new());
+        };
+        let name = printable(&target.name);
+        let Encoded { files, warnings } =
+            encode(self.plan, target, value, provenance).map_err(|failure| {
+                let Failure { message, help } = failure;
+                let mut problem = self.failed(target, format!("cannot write `{name}`: {message}"));
+                problem.help = help;
+                problem
+            })?;
+        let mut written = Vec::new();
+        for (path, content) in &files {
+            let changed = self.write_file(target, path, content, read)?;
+            written.push(WrittenOutput {
+                bytes: content.len() as u64,
+                changed,
+                ..target.file(path)
+            });
+        }
+        if let Some(last) = written.last_mut() {
+            last.lost.clone_from(&warnings);
+        }
+        if let Some(record) = current::record(made_from, &files, warnings) {
+            self.engine.keep_output_record(&target.path, &record);
+        }
+        Ok(written)
+    }
+
+    fn write_file(
+        &self,
+        target: &Target,
+        path: &Path,
+        content: &[u8],
+        read: &ReadFiles,
+    ) -> Result<bool, Box<Diagnostic>> {
+        self.check_inputs(target, path, read)?;
+        if *path != target.path && is_foreign_library(path) {
+            let message = format!(
+                "cannot write the materials of `{}`: {} is there already, and was not \
+                 written by tessgraph",
+                printable(&target.name),
+                shown(path)
+            );
+            let mut problem = self.failed(target, message);
+            problem.help = Some(
+                "give the output another name, or move that file away if it is not needed"
+                    .to_owned(),
+            );
+            return Err(problem);
+        }
+        write_if_changed(path, content)
+            .map_err(|error| self.failed(target, format!("cannot write {}: {error}", shown(path))))
+    }
+
+    /// No file of an output may be one that the run read.
+    fn check_inputs(
+        &self,
+        target: &Target,
+        path: &Path,
+        read: &ReadFiles,
+    ) -> Result<(), Box<Diagnostic>> {
+        let mut read = read.iter();
+        match read.find(|(input, _)| is_same_file(input, path)) {
+            Some((_, name)) => Err(Box::new(onto_input(self.plan, target, name))),
+            None => Ok(()),
+        }
+    }
+
+    fn failed(&self, target: &Target, message: String) -> Box<Diagnostic> {
         let span = target.span.clone();
+        let source = &self.plan.source;
         Box::new(Diagnostic::error(
             "output_failed",
-            &plan.source,
+            source,
             span,
             message,
             "",
         ))
-    };
-    let Encoded { files, warnings } =
-        encode(plan, target, value, provenance).map_err(|failure| {
-            let Failure { message, help } = failure;
-            let mut diagnostic = fail(format!("cannot write `{name}`: {message}"));
-            diagnostic.help = help;
-            diagnostic
-        })?;
-    let (mut bytes, mut changed) = (0, false);
-    for (path, content) in &files {
-        if let Some(input) = read.iter().find(|input| is_same_file(input, path)) {
-            return Err(Box::new(onto_input(plan, target, input)));
-        }
-        changed |= write_if_changed(path, content)
-            .map_err(|error| fail(format!("cannot write {}: {error}", shown(path))))?;
-        if *path == target.path {
-            bytes = content.len() as u64;
+    }
+}
+
+impl Target {
+    /// One of the files that this output consists of.
+    fn file(&self, path: &Path) -> WrittenOutput {
+        let name = if path == self.path {
+            self.name.clone()
+        } else {
+            let beside = path.extension().unwrap_or_default();
+            let name = Path::new(&self.name).with_extension(beside);
+            name.to_string_lossy().into_owned()
+        };
+        WrittenOutput {
+            name,
+            shown: shown(path),
+            bytes: 0,
+            changed: false,
+            lost: Vec::new(),
         }
     }
-    Ok(WrittenOutput {
-        name: target.name.clone(),
-        shown: shown(&target.path),
-        bytes,
-        changed,
-        lost: warnings,
-    })
+}
+
+/// Whether a file is there that no earlier run wrote as a material library.
+fn is_foreign_library(path: &Path) -> bool {
+    let Ok(file) = File::open(path) else {
+        return false;
+    };
+    let mut begin = Vec::new();
+    let read = file.take(LIBRARY_MARK.len() as u64).read_to_end(&mut begin);
+    read.is_err() || begin != LIBRARY_MARK
 }
 
 /// A path from the current folder, if it lies below it.

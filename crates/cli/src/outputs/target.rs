@@ -71,9 +71,9 @@ pub(crate) fn targets(
         };
         if let Some(input) = inputs
             .iter()
-            .find(|input| is_same_file(input, &target.path))
+            .find(|(_, input)| is_same_file(input, &target.path))
         {
-            problems.push(onto_input(plan, &target, input));
+            problems.push(onto_input(plan, &target, &input.0));
         } else if let Some(first) = targets.iter().find(|first| collide(first, &target)) {
             let message = format!(
                 "two outputs are written to `{}`",
@@ -100,12 +100,12 @@ pub(crate) fn targets(
     }
 }
 
-/// The error for an output on a file that the graph reads.
-pub(crate) fn onto_input(plan: &Plan, target: &Target, input: &Path) -> Diagnostic {
+/// The error for an output on a file that the graph reads as `input`.
+pub(crate) fn onto_input(plan: &Plan, target: &Target, input: &str) -> Diagnostic {
     let message = format!(
         "output `{}` would overwrite an input of the graph, {}",
         printable(&target.name),
-        printable(&input.to_string_lossy())
+        format_args!("`{}`", printable(input))
     );
     error(
         plan,
@@ -245,8 +245,9 @@ fn error(
     Diagnostic::error(code, &plan.source, span.clone(), message, remark)
 }
 
-/// The files the graph names as inputs, and the graph file.
-fn input_places(plan: &Plan, folders: &Folders<'_>) -> Vec<PathBuf> {
+/// The files the graph names as inputs, and the graph file: as they are
+/// written, and where they lie.
+fn input_places(plan: &Plan, folders: &Folders<'_>) -> Vec<(String, PathBuf)> {
     let mut names = Vec::new();
     for node in &plan.nodes {
         for (spec, input) in node.spec.inputs.iter().zip(&node.inputs) {
@@ -256,9 +257,12 @@ fn input_places(plan: &Plan, folders: &Folders<'_>) -> Vec<PathBuf> {
         }
     }
     let named = names
-        .iter()
-        .filter_map(|name| locate(folders.graph, Path::new(name)).ok());
-    named.chain(locate(Path::new(""), folders.file)).collect()
+        .into_iter()
+        .map(|name| (locate(folders.graph, Path::new(&name)), name));
+    let graph = folders.file.to_string_lossy().into_owned();
+    let all = named.chain([(locate(Path::new(""), folders.file), graph)]);
+    all.filter_map(|(place, name)| Some((name, place.ok()?)))
+        .collect()
 }
 
 fn collect_texts(origin: &Origin, names: &mut Vec<String>) {

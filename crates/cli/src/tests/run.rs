@@ -1,8 +1,10 @@
 //! `run`, from its graph to its files.
 
 use serde_json::{Value, json};
+use tessgraph_geometry::digest::Digest;
 
 use super::Desk;
+use crate::outputs::FileFormat;
 
 /// A desk with a graph of these nodes and outputs, in centimetres.
 fn desk(nodes: &str, outputs: &str) -> Desk {
@@ -87,6 +89,43 @@ fn glb_is_in_metres_and_says_what_it_was_made_from() {
     assert_eq!(desk.content("elsewhere/a.glb"), first);
 }
 
+/// Digests of what each writer makes of the same values. If one changes, raise
+/// the format's version in outputs/format.rs: otherwise outputs of the version
+/// before count as current.
+#[test]
+fn bytes_change_only_with_the_version_of_their_writer() {
+    let desk = desk(
+        r#""a": Square(side: "side", painted: true), "l": Length(value: "side"),"#,
+        r#""a.glb": "a", "a.obj": "a", "a.stl": "a", "a.ply": "a", "l.json": "l", "l.csv": "l","#,
+    );
+    assert_eq!(desk.command("run", &[]).status, 0);
+    let mut found = String::new();
+    for name in [
+        "a.glb", "a.obj", "a.mtl", "a.stl", "a.ply", "l.json", "l.csv",
+    ] {
+        let mut bytes = desk.content(name);
+        if name == "a.glb" {
+            // It names the program's version, which has records of its own.
+            let end = 20 + u32::from_le_bytes(bytes[12..16].try_into().unwrap()) as usize;
+            let mut json: Value = serde_json::from_slice(&bytes[20..end]).unwrap();
+            json.as_object_mut().unwrap().remove("asset");
+            bytes = [json.to_string().as_bytes(), &bytes[end..]].concat();
+        }
+        let version = FileFormat::of_path(name).map_or(1, FileFormat::version);
+        found += &format!("{name} {version} {}\n", Digest::of(&bytes));
+    }
+    let expected = "\
+a.glb 1 4614820e14e378b1d67819cea10bde88
+a.obj 1 a87ff347ef6926b6a36fa8737b2104f3
+a.mtl 1 1a4b880efa3ca3890e7753c1ce1cbc46
+a.stl 1 2aa43188d02f691e3222084586617a82
+a.ply 1 02cc5eea4eaee59fe9e907b7847b5bcc
+l.json 1 4fa28e4d785f27f582d72e1af8bf196e
+l.csv 1 534f9ac539112fc4b33b352a0392e72c
+";
+    assert_eq!(found, expected);
+}
+
 #[test]
 fn materials_go_beside_an_obj() {
     let desk = desk(
@@ -103,6 +142,16 @@ fn materials_go_beside_an_obj() {
     assert_eq!(desk.names("o"), ["a.mtl", "a.obj"]);
     assert!(desk.text("o/a.obj").contains("mtllib a.mtl"));
     assert!(desk.text("o/a.mtl").contains("newmtl paint"));
+    assert!(given.err.contains("a.mtl"), "{}", given.err);
+    let foreign = "newmtl of_somebody_else\n";
+    desk.write("o/a.mtl", foreign);
+    let given = desk.command("run", &[]);
+    assert_eq!((given.status, desk.text("o/a.mtl")), (1, foreign.into()));
+    assert!(
+        given.err.contains("was not written by tessgraph"),
+        "{}",
+        given.err
+    );
 }
 
 #[test]

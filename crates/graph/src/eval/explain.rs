@@ -2,7 +2,7 @@
 
 use tessgraph_geometry::digest::{Digest, Hasher};
 
-use super::cache::Cache;
+use super::cache::{Cache, FileKind};
 use super::key::Part;
 use super::outcome::Evaluation;
 use crate::node::InputSpec;
@@ -114,13 +114,12 @@ pub(super) fn explain(
 ) -> Vec<KeyChange> {
     let graph = Hasher::new().text("last run").text(identity).finish();
     let before = cache
-        .last_run(graph)
-        .and_then(|bytes| KeyRecord::decode(&bytes))
+        .record(FileKind::LastRun, graph, KeyRecord::decode)
         .unwrap_or_default();
     let now = KeyRecord::of(plan, evaluation);
     let changes = now.changes(&before, plan);
     if now != before {
-        cache.set_last_run(graph, &now.encode());
+        cache.set_record(FileKind::LastRun, graph, &now.encode());
     }
     changes
 }

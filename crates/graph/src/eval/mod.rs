@@ -6,6 +6,7 @@ mod files;
 mod inputs;
 mod key;
 mod outcome;
+mod output;
 mod run;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -16,6 +17,7 @@ use self::cache::Cache;
 pub use cache::{CacheFolder, CacheStats, FolderStats, GcReport, VerifyReport};
 pub use explain::KeyChange;
 pub use outcome::{Evaluation, NodeRun, NodeTime, Observer, Outcome, Silent};
+pub use output::{OutputRecord, WrittenFile};
 
 use crate::plan::{Plan, ResultRef};
 use crate::world::World;
@@ -116,6 +118,20 @@ impl Engine {
         cache.map_or_else(Vec::new, |cache| {
             explain::explain(cache, identity, plan, evaluation)
         })
+    }
+
+    /// What is known about the last writing of the output at `path`, an absolute
+    /// path; `None` without a cache folder, and where nothing sound is known.
+    pub fn output_record(&self, path: &Path) -> Option<OutputRecord> {
+        output::find(self.cache.as_deref()?, path)
+    }
+
+    /// Keeps for later runs how the output at `path` was written. Without a
+    /// cache folder nothing is kept.
+    pub fn keep_output_record(&self, path: &Path, record: &OutputRecord) {
+        if let Some(cache) = self.cache.as_deref() {
+            output::keep(cache, path, record);
+        }
     }
 }
 

@@ -166,9 +166,11 @@ impl Evaluation {
 /// Called from several threads. Nodes are named by index into the plan.
 pub trait Observer: Sync {
     /// Whether the value of a result that was asked for is needed, now that its
-    /// digest is known. An output whose file is unchanged needs none, and then
-    /// none is read from the cache. Not asked about what was computed anyhow.
-    fn needs(&self, _result: ResultRef, _digest: Digest) -> bool {
+    /// digest and provenance are known (see [`Evaluation::digest`] and
+    /// [`Evaluation::provenance`]). An output whose file is unchanged needs none,
+    /// and then none is read from the cache. Not asked about what was computed
+    /// anyhow.
+    fn needs(&self, _result: ResultRef, _digest: Digest, _provenance: Digest) -> bool {
         true
     }
 

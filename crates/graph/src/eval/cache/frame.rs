@@ -15,7 +15,7 @@ const CHECKSUM: usize = 32;
 
 /// What a cache file holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum FileKind {
+pub(in crate::eval) enum FileKind {
     /// What is known about a node under a key.
     Entry,
     /// A value under its digest.
@@ -24,10 +24,18 @@ pub(super) enum FileKind {
     Topology,
     /// The keys of a graph's last run.
     LastRun,
+    /// What an output file was last written from.
+    Output,
 }
 
 impl FileKind {
-    pub(super) const ALL: [Self; 4] = [Self::Entry, Self::Value, Self::Topology, Self::LastRun];
+    pub(super) const ALL: [Self; 5] = [
+        Self::Entry,
+        Self::Value,
+        Self::Topology,
+        Self::LastRun,
+        Self::Output,
+    ];
 
     /// The folder its files are in.
     pub(super) fn folder(self) -> &'static str {
@@ -36,6 +44,7 @@ impl FileKind {
             Self::Value => "values",
             Self::Topology => "topologies",
             Self::LastRun => "runs",
+            Self::Output => "outputs",
         }
     }
 
@@ -45,6 +54,7 @@ impl FileKind {
             Self::Value => 2,
             Self::Topology => 3,
             Self::LastRun => 4,
+            Self::Output => 5,
         }
     }
 }

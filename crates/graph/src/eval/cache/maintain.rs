@@ -77,7 +77,7 @@ impl CacheFolder {
             match file.kind {
                 FileKind::Entry => stats.entries += 1,
                 FileKind::Value | FileKind::Topology => stats.values += 1,
-                FileKind::LastRun => {}
+                FileKind::LastRun | FileKind::Output => {}
             }
         }
         stats

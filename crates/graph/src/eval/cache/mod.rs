@@ -19,13 +19,13 @@ use tessgraph_geometry::Topology;
 use tessgraph_geometry::digest::Digest;
 
 use self::disk::Disk;
-use self::frame::FileKind;
 use self::memory::Memory;
 use self::writer::{Writer, topology_of};
 use crate::value::Value;
 use crate::value::encode::{Decoder, decode_topology};
 
 pub(super) use entry::{Entry, Known};
+pub(super) use frame::FileKind;
 pub use maintain::{CacheFolder, FolderStats, GcReport, VerifyReport};
 pub(super) use writer::ToStore;
 
@@ -206,16 +206,20 @@ impl Cache {
             .or_else(|| disk.and_then(Disk::warning))
     }
 
-    /// Content kept under the identity of a graph.
-    pub(super) fn last_run(&self, graph: Digest) -> Option<Vec<u8>> {
-        let disk = self.disk.as_ref()?;
-        disk.read(FileKind::LastRun, graph, |bytes| Some(bytes.to_vec()))
+    /// What is kept about something else than a node: a graph, an output.
+    pub(super) fn record<T>(
+        &self,
+        kind: FileKind,
+        about: Digest,
+        decode: impl FnOnce(&[u8]) -> Option<T>,
+    ) -> Option<T> {
+        self.disk.as_ref()?.read(kind, about, decode)
     }
 
-    /// Replaces what is kept under the identity of a graph.
-    pub(super) fn set_last_run(&self, graph: Digest, content: &[u8]) {
+    /// Replaces what [`Cache::record`] gives.
+    pub(super) fn set_record(&self, kind: FileKind, about: Digest, content: &[u8]) {
         if let Some(disk) = &self.disk {
-            disk.write(FileKind::LastRun, graph, 0.0, content);
+            disk.write(kind, about, 0.0, content);
         }
     }
 }

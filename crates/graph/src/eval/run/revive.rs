@@ -204,7 +204,10 @@ impl Run<'_> {
             .wanted
             .iter()
             .filter(|result| result.node == node)
-            .filter(|result| self.observer.needs(**result, self.digest(**result)))
+            .filter(|&&result| {
+                let (digest, provenance) = (self.digest(result), self.provenance(result));
+                self.observer.needs(result, digest, provenance)
+            })
             .copied()
             .collect();
         if let Err(Unready::Lost(_)) = self.load(&needed) {
