@@ -14,3 +14,4 @@ mod recomputation;
 mod several_components;
 mod support;
 mod tidy;
+mod timings;

@@ -18,6 +18,7 @@ mod process;
 mod progress;
 mod report;
 mod text;
+mod timings;
 mod world;
 
 #[cfg(test)]

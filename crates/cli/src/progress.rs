@@ -7,6 +7,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use tessgraph_graph::{NodeRun, Observer};
 
 use crate::interrupt;
+use crate::memory::Span;
 
 /// Work that is shorter than this shows no bar: it would only flicker.
 const PATIENCE: Duration = Duration::from_millis(300);
@@ -24,11 +25,20 @@ pub(crate) fn with_running(show: impl FnOnce(&[String])) {
     }
 }
 
-/// An observer that draws a bar on stderr once the work has lasted a while.
+/// An observer that draws a bar on stderr once the work has lasted a while, and
+/// measures the memory of each node.
 pub(crate) struct Progress {
     bar: ProgressBar,
     names: Vec<String>,
-    running: Mutex<Vec<(usize, Option<u64>)>>,
+    running: Mutex<Vec<Running>>,
+    peaks: Mutex<Vec<Option<u64>>>,
+}
+
+/// A node at work.
+struct Running {
+    node: usize,
+    percent: Option<u64>,
+    memory: Span,
 }
 
 impl Progress {
@@ -41,9 +51,16 @@ impl Progress {
         }
         Self {
             bar,
+            peaks: Mutex::new(vec![None; names.len()]),
             names,
             running: Mutex::default(),
         }
+    }
+
+    /// The most bytes each node took while it was evaluated, as [`Span`] measures
+    /// them; `None` for nodes that were not evaluated.
+    pub(crate) fn peaks(&self) -> Vec<Option<u64>> {
+        lock(&self.peaks).clone()
     }
 
     /// Carries `work` out; with `live` a bar is shown meanwhile if it takes long.
@@ -71,47 +88,64 @@ impl Progress {
         result
     }
 
-    fn update(&self, change: impl FnOnce(&mut Vec<(usize, Option<u64>)>)) {
-        let mut running = self.running.lock().unwrap_or_else(PoisonError::into_inner);
-        change(&mut running);
-        if self.bar.is_hidden() {
-            return;
+    fn update<T>(&self, change: impl FnOnce(&mut Vec<Running>) -> T) -> T {
+        let mut running = lock(&self.running);
+        let result = change(&mut running);
+        if !self.bar.is_hidden() {
+            let shown = running.iter().map(|at_work| {
+                let name = &self.names[at_work.node];
+                match at_work.percent {
+                    Some(percent) => format!("{name} {percent} %"),
+                    None => name.clone(),
+                }
+            });
+            self.bar.set_message(shown.collect::<Vec<_>>().join(", "));
         }
-        let shown = running.iter().map(|(node, percent)| match percent {
-            Some(percent) => format!("{} {percent} %", self.names[*node]),
-            None => self.names[*node].clone(),
-        });
-        self.bar.set_message(shown.collect::<Vec<_>>().join(", "));
+        result
     }
 }
 
-fn running_names() -> MutexGuard<'static, Vec<String>> {
-    RUNNING.lock().unwrap_or_else(PoisonError::into_inner)
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 impl Observer for Progress {
     fn started(&self, node: usize) {
-        running_names().push(self.names[node].clone());
-        self.update(|running| running.push((node, None)));
+        lock(&RUNNING).push(self.names[node].clone());
+        let memory = Span::begin();
+        self.update(|running| {
+            running.push(Running {
+                node,
+                percent: None,
+                memory,
+            });
+        });
     }
 
     fn progress(&self, node: usize, done: u64, total: u64) {
         let percent = (done.saturating_mul(100)).checked_div(total);
         self.update(|running| {
-            if let Some(entry) = running.iter_mut().find(|(other, _)| *other == node) {
-                entry.1 = percent;
+            if let Some(at_work) = running.iter_mut().find(|at_work| at_work.node == node) {
+                at_work.percent = percent;
             }
         });
     }
 
     fn finished(&self, node: usize, _run: &NodeRun) {
-        let mut names = running_names();
+        let ended = self.update(|running| {
+            let place = running.iter().position(|at_work| at_work.node == node)?;
+            Some(running.swap_remove(place))
+        });
+        if let Some(peak) = ended.and_then(|ended| ended.memory.end()) {
+            let known = &mut lock(&self.peaks)[node];
+            *known = (*known).max(Some(peak));
+        }
+        let mut names = lock(&RUNNING);
         if let Some(place) = names.iter().position(|name| *name == self.names[node]) {
             names.swap_remove(place);
         }
         drop(names);
         self.bar.inc(1);
-        self.update(|running| running.retain(|(other, _)| *other != node));
     }
 
     fn cancelled(&self) -> bool {

@@ -17,8 +17,18 @@ pub(crate) struct RunReport<'a> {
     pub(crate) ms: f64,
     /// The nodes in the order of the plan.
     pub(crate) nodes: &'a [NodeRun],
+    /// The most memory each node took, where that was measured.
+    pub(crate) peaks: &'a [Option<u64>],
     /// The outputs that were made, in the order of the file.
     pub(crate) outputs: &'a [WrittenOutput],
+}
+
+impl RunReport<'_> {
+    /// The nodes, each with the most memory it took.
+    fn measured(&self) -> impl Iterator<Item = (&NodeRun, Option<u64>)> {
+        let peaks = self.peaks.iter().copied().chain(std::iter::repeat(None));
+        self.nodes.iter().zip(peaks)
+    }
 }
 
 /// The outcomes in the order they are counted in.
@@ -33,7 +43,10 @@ const OUTCOMES: [Outcome; 6] = [
 
 /// The report as JSON on one line.
 pub(crate) fn json(report: &RunReport<'_>) -> String {
-    let nodes: Vec<Value> = report.nodes.iter().map(node_json).collect();
+    let nodes: Vec<Value> = report
+        .measured()
+        .map(|(node, peak)| node_json(node, peak))
+        .collect();
     let outputs = report.outputs.iter().map(
         |output| json!({ "path": output.name, "bytes": output.bytes, "changed": output.changed }),
     );
@@ -43,13 +56,14 @@ pub(crate) fn json(report: &RunReport<'_>) -> String {
     format!("{}\n", line(&report))
 }
 
-fn node_json(node: &NodeRun) -> Value {
+fn node_json(node: &NodeRun, peak: Option<u64>) -> Value {
     json!({
         "name": node.name,
         "kind": node.kind,
         "outcome": node.outcome.name(),
         "ms": ms(node.ms),
         "bytes": node.bytes,
+        "peak_bytes": peak,
         "warnings": node.warnings,
     })
 }
@@ -61,37 +75,21 @@ fn ms(ms: f64) -> Value {
 
 /// The report as a table of nodes, a line per output and a summary.
 pub(crate) fn human(report: &RunReport<'_>) -> String {
-    let mut rows = vec![
-        ["node", "kind", "outcome", "time", "size"]
-            .map(str::to_owned)
-            .to_vec(),
-    ];
-    for node in report.nodes {
-        let ran = matches!(node.outcome, Outcome::Computed | Outcome::Failed);
-        rows.push(vec![
-            printable(&node.name).into_owned(),
-            node.kind.to_owned(),
-            node.outcome.name().to_owned(),
-            if ran {
-                time_text(node.ms)
-            } else {
-                String::new()
-            },
-            if node.outcome.is_done() {
-                bytes_text(node.bytes as u64)
-            } else {
-                String::new()
-            },
-        ]);
-    }
+    let head = ["node", "kind", "outcome", "time", "size", "memory"];
+    let mut rows = vec![head.map(str::to_owned).to_vec()];
+    rows.extend(report.measured().map(|(node, peak)| row(node, peak)));
     let align = [
         Align::Left,
         Align::Left,
         Align::Left,
         Align::Right,
         Align::Right,
+        Align::Right,
     ];
-    let mut text = table(&rows, &align);
+    // What no node took, or nobody measured, needs no column.
+    let columns = 5 + usize::from(report.peaks.iter().flatten().any(|&peak| peak > 0));
+    rows.iter_mut().for_each(|row| row.truncate(columns));
+    let mut text = table(&rows, &align[..columns]);
     let outputs = report.outputs.iter().map(|output| {
         let what = if output.changed {
             "written"
@@ -108,6 +106,23 @@ pub(crate) fn human(report: &RunReport<'_>) -> String {
     }
     let _ = writeln!(text, "\n{}", summary(report));
     text
+}
+
+fn row(node: &NodeRun, peak: Option<u64>) -> Vec<String> {
+    let ran = matches!(node.outcome, Outcome::Computed | Outcome::Failed);
+    let time = ran.then(|| time_text(node.ms));
+    let size = node
+        .outcome
+        .is_done()
+        .then(|| bytes_text(node.bytes as u64));
+    vec![
+        printable(&node.name).into_owned(),
+        node.kind.to_owned(),
+        node.outcome.name().to_owned(),
+        time.unwrap_or_default(),
+        size.unwrap_or_default(),
+        peak.map(bytes_text).unwrap_or_default(),
+    ]
 }
 
 /// "5 nodes: 4 computed, 1 cached in 0.8 s".
@@ -158,11 +173,12 @@ mod tests {
             ok: true,
             ms: 800.0,
             nodes: &nodes,
+            peaks: &[Some(1_300_000)],
             outputs: &outputs,
         };
         let expected = concat!(
             r#"{"ok":true,"ms":800.0,"nodes":[{"name":"roof","kind":"ReadMesh","#,
-            r#""outcome":"cut_off","ms":1.235,"bytes":14210,"warnings":["open"]}],"#,
+            r#""outcome":"cut_off","ms":1.235,"bytes":14210,"peak_bytes":1300000,"warnings":["open"]}],"#,
             r#""outputs":[{"path":"out/a.glb","bytes":1200000,"changed":true}]}"#,
             "\n"
         );
@@ -181,11 +197,12 @@ mod tests {
             ok: false,
             ms: 800.0,
             nodes: &nodes,
+            peaks: &[Some(1_300_000), None, None],
             outputs: &outputs,
         };
         let expected = "\
-node         kind      outcome     time     size
-roof         ReadMesh  computed  1.2 ms  14.2 kB
+node         kind      outcome     time     size  memory
+roof         ReadMesh  computed  1.2 ms  14.2 kB  1.3 MB
 smooth_dirs  ReadMesh  cached            14.2 kB
 x            ReadMesh  blocked
 
@@ -194,5 +211,12 @@ x/out/a.glb  1.2 MB  unchanged
 3 nodes: 1 computed, 1 cached, 1 blocked in 0.8 s
 ";
         assert_eq!(human(&report), expected);
+        let unmeasured = RunReport {
+            peaks: &[None; 3],
+            ..report
+        };
+        assert!(
+            human(&unmeasured).starts_with("node         kind      outcome     time     size\n")
+        );
     }
 }

@@ -6,11 +6,12 @@ use std::cell::Cell;
 use std::io::Write as _;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
+use super::meter;
 use crate::commands::FAILED;
 use crate::interrupt;
 
 /// Only pieces of this size or more are counted: a mesh's buffers, not names.
-const LARGE: usize = 64 << 10;
+pub(super) const LARGE: usize = 64 << 10;
 
 /// Bytes that large pieces may take together.
 static LIMIT: AtomicUsize = AtomicUsize::new(usize::MAX);
@@ -48,6 +49,7 @@ fn counted(size: usize) -> usize {
 /// Counts a piece of `new` bytes that takes the place of one of `old`.
 fn exchange(old: usize, new: usize) {
     let (old, new) = (counted(old), counted(new));
+    meter::exchange(old, new);
     if new <= old {
         if old > 0 {
             LIVE.fetch_sub(old - new, Ordering::Relaxed);

@@ -1,9 +1,11 @@
-//! How much memory a run may take.
+//! How much memory a run may take, and how much its nodes took.
 
 mod guard;
+mod meter;
 
 pub use guard::MemoryGuard;
 pub(crate) use guard::set_limit;
+pub(crate) use meter::{Span, count_this_thread};
 
 /// What is assumed where the system does not tell.
 const FALLBACK: u64 = 8 << 30;
