@@ -182,6 +182,12 @@ pub enum GeometryError {
         /// The vertices, ascending.
         vertices: Vec<u32>,
     },
+    /// Faces without area, where their normal is needed.
+    #[error("{} no area, so there is no normal", name_faces(.faces))]
+    NoArea {
+        /// The faces, ascending.
+        faces: Vec<u32>,
+    },
     /// Compensated directions where their plain lengths are needed.
     #[error(
         "the directions are compensated for thickness already; \
@@ -286,6 +292,7 @@ impl GeometryError {
             Self::NoNormal { .. } => {
                 "orient the faces alike with FlipFaces, or remove the degenerate ones"
             }
+            Self::NoArea { .. } => "repair or delete these faces",
             Self::Compensated { .. } => "give it the directions from before CompensateThickness",
             Self::NonManifold { .. } => "split the mesh along these edges",
             Self::RepeatedVertex { .. } => "weld the mesh, or repair the face",
@@ -302,6 +309,14 @@ fn name_vertices(ids: &[u32], one: &str, many: &str) -> String {
     match ids {
         [id] => format!("vertex {id} {one}"),
         _ => format!("vertices {} {many}", list_ids(ids)),
+    }
+}
+
+/// "face 4 has" or "faces 4 and 7 have".
+fn name_faces(ids: &[u32]) -> String {
+    match ids {
+        [id] => format!("face {id} has"),
+        _ => format!("faces {} have", list_ids(ids)),
     }
 }
 

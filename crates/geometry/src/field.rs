@@ -165,6 +165,29 @@ impl Amount {
         }
     }
 
+    /// The number at a corner: that of `face`, or of `vertex` for a field on
+    /// vertices.
+    ///
+    /// # Panics
+    /// If it is a field with no such element; [`Amount::check_corners`] rules that out.
+    pub(crate) fn at_corner(&self, face: usize, vertex: u32) -> f64 {
+        match self {
+            Self::Field(field) if field.domain == Domain::Face => field.values[face],
+            _ => self.at(vertex as usize),
+        }
+    }
+
+    /// Checks that there is a number for every vertex or for every face of `mesh`.
+    ///
+    /// # Errors
+    /// [`GeometryError::FieldLength`].
+    pub(crate) fn check_corners(&self, mesh: &Mesh) -> Result<(), GeometryError> {
+        match self {
+            Self::Constant(_) => Ok(()),
+            Self::Field(field) => field.check(mesh, field.domain),
+        }
+    }
+
     /// The smallest and the largest number that occurs; the constant twice.
     pub fn range(&self) -> (f64, f64) {
         match self {

@@ -72,11 +72,13 @@ pub use weld::{Welded, weld_vertices};
 
 /// Attributes by which operations record where elements come from; files whose
 /// format has no place for them lose nothing that a user put there.
-pub const PROVENANCE: [&str; 6] = [
+pub const PROVENANCE: [&str; 8] = [
     BASE_FACE,
     COMPONENT_FACE,
     COMPONENT,
     PANEL,
     subdivide::PARENT,
     PART,
+    domains::SOURCE_FACE,
+    domains::SOURCE_VERTEX,
 ];

@@ -42,6 +42,36 @@ pub fn lerp2(a: DVec2, b: DVec2, t: f64) -> DVec2 {
     a * (1.0 - t) + b * t
 }
 
+/// The eigenvalues of a symmetric matrix and their unit eigenvectors, by Jacobi
+/// rotations (Golub and Van Loan 2013, §8.5); in no order.
+pub fn symmetric_axes(mut m: [[f64; 3]; 3]) -> ([f64; 3], [DVec3; 3]) {
+    let mut axes = [DVec3::X, DVec3::Y, DVec3::Z];
+    // Convergence is quadratic; three sweeps usually suffice.
+    for _ in 0..12 {
+        for (p, q) in [(0, 1), (0, 2), (1, 2)] {
+            if m[p][q] == 0.0 {
+                continue;
+            }
+            let theta = (m[q][q] - m[p][p]) / (2.0 * m[p][q]);
+            let t = theta.signum() / (theta.abs() + (theta * theta + 1.0).sqrt());
+            let c = 1.0 / (t * t + 1.0).sqrt();
+            let s = t * c;
+            let r = 3 - p - q;
+            let (pp, qq, pq, pr, qr) = (m[p][p], m[q][q], m[p][q], m[p][r], m[q][r]);
+            m[p][p] = pp - t * pq;
+            m[q][q] = qq + t * pq;
+            (m[p][q], m[q][p]) = (0.0, 0.0);
+            m[p][r] = c * pr - s * qr;
+            m[q][r] = s * pr + c * qr;
+            (m[r][p], m[r][q]) = (m[p][r], m[q][r]);
+            let (u, v) = (axes[p], axes[q]);
+            axes[p] = u * c - v * s;
+            axes[q] = u * s + v * c;
+        }
+    }
+    ([m[0][0], m[1][1], m[2][2]], axes.map(unit_or_zero))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -3,7 +3,6 @@
 use glam::DVec3;
 
 use crate::rebuild::{Sources, rebuild};
-use crate::weld::Sets;
 use crate::{
     Amount, Attribute, AttributeValues, Directions, Domain, GeometryError, Mesh, Monitor, Topology,
     parallel,
@@ -58,8 +57,8 @@ pub fn offset_mesh(
     directions.check(base)?;
     check_thickness(base, outward, inward)?;
     base.topology().check_manifold()?;
-    check_oriented(base.topology())?;
-    let (corner_vertex, sources) = split_fans(base.topology());
+    base.topology().check_oriented()?;
+    let (corner_vertex, sources) = base.topology().split_fans(|_| true);
     let positions = both_sides(base, directions, [outward, inward], &sources, monitor)?;
     let shell = Shell::new(base, &corner_vertex, sources);
     let parts = AttributeValues::Integer(shell.parts.into());
@@ -99,64 +98,6 @@ fn check_thickness(base: &Mesh, outward: &Amount, inward: &Amount) -> Result<(),
         value: 0.0,
         requirement: "outward or inward must be positive",
     })
-}
-
-/// Checks that the two faces of each edge pass it in opposite senses.
-fn check_oriented(topology: &Topology) -> Result<(), GeometryError> {
-    let adjacency = topology.adjacency();
-    for edge in 0..adjacency.edge_count() {
-        if let [c, d] = *adjacency.edge_corners(edge)
-            && topology.corners()[c as usize] == topology.corners()[d as usize]
-        {
-            let [a, b] = adjacency.edge(edge);
-            let [f, g] = [c, d].map(|corner| adjacency.corner_faces()[corner as usize]);
-            return Err(GeometryError::Invalid(format!(
-                "faces {f} and {g} pass their edge {a}-{b} in the same sense; \
-                 turn the faces round so that neighbours agree on the outside"
-            )));
-        }
-    }
-    Ok(())
-}
-
-/// The vertex of each corner once vertices are split by fans of faces, and the
-/// base vertex of each of these. Fans keep the order of vertices and, at one
-/// vertex, of their first corners.
-fn split_fans(topology: &Topology) -> (Vec<u32>, Vec<u32>) {
-    let adjacency = topology.adjacency();
-    let corners = topology.corners();
-    let mut fans = Sets::new(corners.len());
-    let next = |corner: u32| {
-        let range = topology.corner_range(adjacency.corner_faces()[corner as usize] as usize);
-        let next = corner + 1;
-        if next as usize == range.end {
-            range.start as u32
-        } else {
-            next
-        }
-    };
-    for edge in 0..adjacency.edge_count() {
-        if let [c, d] = *adjacency.edge_corners(edge) {
-            // Opposite senses: each starts where the other one ends.
-            fans.join(c, next(d));
-            fans.join(d, next(c));
-        }
-    }
-    let mut corner_vertex = vec![0; corners.len()];
-    let mut sources = Vec::new();
-    for vertex in 0..topology.vertex_count() {
-        // Ascending corners meet the root of a fan, its lowest, first.
-        for &corner in adjacency.vertex_corners(vertex) {
-            let root = fans.root(corner);
-            if root == corner {
-                corner_vertex[corner as usize] = sources.len() as u32;
-                sources.push(vertex as u32);
-            } else {
-                corner_vertex[corner as usize] = corner_vertex[root as usize];
-            }
-        }
-    }
-    (corner_vertex, sources)
 }
 
 fn both_sides(

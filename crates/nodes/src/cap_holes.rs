@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use tessgraph_geometry::Mesh;
-use tessgraph_geometry::domains::{self, Cap};
+use tessgraph_geometry::domains::{self, Cap, CapOptions};
+use tessgraph_geometry::{Amount, Mesh};
 use tessgraph_graph::{EvalCx, Node, NodeError};
 use tessgraph_macros::{Choice, Inputs, Outputs};
 
@@ -11,7 +11,7 @@ use tessgraph_macros::{Choice, Inputs, Outputs};
 ///
 /// Caps continue the orientation of the surface and take the material of the face
 /// at the hole's first edge. The outer border of an open surface counts as a hole
-/// too; `most_edges` leaves larger ones open.
+/// too; `most_edges` leaves larger ones open, and `only` chooses among them.
 ///
 /// ```ron
 /// Graph(version: 1, nodes: {
@@ -31,6 +31,17 @@ pub(crate) struct CapHoles {
     /// Holes with more edges stay open; left out, all are closed.
     #[input(min = 3, max = 1000000)]
     most_edges: Option<u32>,
+    /// Which holes are closed: those where this is 0.5 or more all along, a number
+    /// or one per vertex or face.
+    #[input(default = 1.0)]
+    only: Amount,
+    /// Name of the material of the caps; left out, that of the face at the hole's
+    /// first edge.
+    material: Option<String>,
+    /// Sharpness of the edges round caps in `SubdivideQuad`: 0 smooth, 10 and more
+    /// sharp at every level.
+    #[input(default = 0.0, min = 0)]
+    crease: f64,
 }
 
 /// What closes a hole.
@@ -58,8 +69,14 @@ impl Node for CapHoles {
     type Output = CappedHoles;
 
     fn eval(self, cx: &EvalCx<'_>) -> Result<Self::Output, NodeError> {
-        let most = self.most_edges.map(|most| most as usize);
-        let capped = domains::cap_holes(&self.mesh, self.cap.into(), most)?;
+        let options = CapOptions {
+            cap: self.cap.into(),
+            most_edges: self.most_edges.map(|most| most as usize),
+            only: self.only,
+            crease: self.crease,
+            material: self.material.as_deref(),
+        };
+        let capped = domains::cap_holes(&self.mesh, &options)?;
         if capped.broken > 0 {
             cx.warn(format!(
                 "{} borders stay open: they do not return to where they start, because \

@@ -7,6 +7,7 @@
 mod array_components;
 mod attribute_field;
 mod blend_directions;
+mod bridge_loops;
 mod cap_holes;
 mod check_intersections;
 mod check_planarity;
@@ -19,8 +20,10 @@ mod delete_faces;
 mod directions_from_attribute;
 mod displace_vertices;
 mod distance_field;
+mod dual_mesh;
 mod evaluate_field;
 mod evaluate_normals_uv;
+mod extrude_faces;
 mod face_normals;
 mod fan_faces;
 mod fit_component;
@@ -73,13 +76,16 @@ pub static NODES: &[NodeSpec] = &[
     NodeSpec::of::<triangulate_faces::TriangulateFaces>(),
     NodeSpec::of::<fan_faces::FanFaces>(),
     NodeSpec::of::<frame_faces::FrameFaces>(),
+    NodeSpec::of::<dual_mesh::DualMesh>(),
     NodeSpec::of::<rotate_faces::RotateFaces>(),
     NodeSpec::of::<flip_faces::FlipFaces>(),
     // Parts of meshes
     NodeSpec::of::<select_faces::SelectFaces>(),
     NodeSpec::of::<delete_faces::DeleteFaces>(),
+    NodeSpec::of::<extrude_faces::ExtrudeFaces>(),
     NodeSpec::of::<weld_vertices::WeldVertices>(),
     NodeSpec::of::<cap_holes::CapHoles>(),
+    NodeSpec::of::<bridge_loops::BridgeLoops>(),
     // Fields and attributes
     NodeSpec::of::<evaluate_field::EvaluateField>(),
     NodeSpec::of::<attribute_field::AttributeField>(),

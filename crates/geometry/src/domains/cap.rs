@@ -1,9 +1,10 @@
 //! Holes closed by new faces.
 
+use super::closing::{chosen_walks, with_crease, with_material};
 use super::fan::{edge_weights, weighted_mean};
 use super::pieces::{Corner, NEW_EDGE, Pieces};
 use crate::topology::{BoundaryWalk, boundary_walks, next_in_face};
-use crate::{GeometryError, Mesh};
+use crate::{Amount, GeometryError, Mesh};
 
 /// What closes a hole.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -13,6 +14,34 @@ pub enum Cap {
     Polygon,
     /// Triangles round the hole's length-weighted centre.
     Fan,
+}
+
+/// Settings of [`cap_holes`].
+#[derive(Debug, Clone)]
+pub struct CapOptions<'a> {
+    /// What closes a hole.
+    pub cap: Cap,
+    /// Holes with more edges stay open; `None` for no limit.
+    pub most_edges: Option<usize>,
+    /// Which holes are closed: those where this is 0.5 or more all along; a
+    /// number, or one per vertex or face.
+    pub only: Amount,
+    /// Sharpness of the edges round caps, if they have not a higher one.
+    pub crease: f64,
+    /// Material of the caps; `None` for that of the face at the first edge.
+    pub material: Option<&'a str>,
+}
+
+impl Default for CapOptions<'_> {
+    fn default() -> Self {
+        Self {
+            cap: Cap::Polygon,
+            most_edges: None,
+            only: Amount::Constant(1.0),
+            crease: 0.0,
+            material: None,
+        }
+    }
 }
 
 /// A mesh whose holes were closed.
@@ -29,7 +58,7 @@ pub struct Capped {
     pub broken: usize,
 }
 
-/// Closes open borders of at most `most_edges` edges (any without it).
+/// Closes open borders.
 ///
 /// A cap runs against the border, so that it continues the surface's orientation.
 /// It takes material, group and face values from the face at the border's first
@@ -38,28 +67,30 @@ pub struct Capped {
 /// edges to leave it. Cost: O(corners).
 ///
 /// # Errors
-/// As [`Mesh::new`].
-pub fn cap_holes(
-    mesh: &Mesh,
-    cap: Cap,
-    most_edges: Option<usize>,
-) -> Result<Capped, GeometryError> {
+/// As [`Mesh::new`]; [`GeometryError::OutOfRange`] for a crease that is negative
+/// or not finite; [`GeometryError::FieldLength`].
+pub fn cap_holes(mesh: &Mesh, options: &CapOptions<'_>) -> Result<Capped, GeometryError> {
     let mut pieces = Pieces::new(mesh, 2 * mesh.corner_count());
     (0..mesh.face_count()).for_each(|face| pieces.keep(face));
     let (mut caps, mut larger, mut broken) = (0, 0, 0);
-    for walk in boundary_walks(mesh.topology()) {
-        if !walk.closed || walk.corners.len() < 3 {
+    let mut rims = Vec::new();
+    let walks = boundary_walks(mesh.topology());
+    let chosen = chosen_walks(mesh, &walks, &options.only)?;
+    for (walk, _) in walks.iter().zip(chosen).filter(|(_, chosen)| *chosen) {
+        let edges = walk.corners.len();
+        if !walk.closed || edges < 3 {
             broken += 1;
-        } else if most_edges.is_some_and(|most| walk.corners.len() > most) {
+        } else if options.most_edges.is_some_and(|most| edges > most) {
             larger += 1;
         } else {
             caps += 1;
-            close(mesh, &mut pieces, &walk, cap);
+            rims.extend_from_slice(&walk.corners);
+            close(mesh, &mut pieces, walk, options.cap);
         }
     }
-    let mesh = pieces.finish(false)?;
+    let closed = with_material(pieces.finish(false)?, mesh.face_count(), options.material)?;
     Ok(Capped {
-        mesh,
+        mesh: with_crease(closed, rims.into_iter(), options.crease)?,
         caps,
         larger,
         broken,

@@ -56,7 +56,7 @@ impl<'a> Insets<'a> {
         let count = vertices.len();
         let place = |k: usize| self.mesh.positions()[vertices[k % count] as usize];
         let at = place(k);
-        let width = at_place(&self.options.width, face, vertices[k]);
+        let width = self.options.width.at_corner(face, vertices[k]);
         match self.options.inset {
             Inset::Centre => lerp(at, centre(count, place), width),
             inset => {
@@ -95,10 +95,10 @@ impl<'a> Insets<'a> {
             }
         };
         let width = match (&self.options.border_width, self.options.inset) {
-            (Some(width), _) => at_place(width, face, vertex),
-            (None, Inset::Constant) => at_place(&self.options.width, face, vertex),
+            (Some(width), _) => width.at_corner(face, vertex),
+            (None, Inset::Constant) => self.options.width.at_corner(face, vertex),
             (None, _) => {
-                at_place(&self.options.width, face, vertex) * self.relative[vertex as usize]
+                self.options.width.at_corner(face, vertex) * self.relative[vertex as usize]
             }
         };
         let outwards = -mitre(a, b, self.normals[face]);
@@ -175,17 +175,8 @@ fn centre(count: usize, place: impl Fn(usize) -> DVec3) -> DVec3 {
     origin + sum / count as f64
 }
 
-fn at_place(amount: &Amount, face: usize, vertex: u32) -> f64 {
-    match amount {
-        Amount::Field(field) if field.domain() == crate::Domain::Face => amount.at(face),
-        _ => amount.at(vertex as usize),
-    }
-}
-
 fn check_width(mesh: &Mesh, width: &Amount, most: f64) -> Result<(), GeometryError> {
-    if let Amount::Field(field) = width {
-        width.check(mesh, field.domain())?;
-    }
+    width.check_corners(mesh)?;
     let (low, high) = width.range();
     let value = if low >= 0.0 { high } else { low };
     let empty = matches!(width, Amount::Field(field) if field.values().is_empty());

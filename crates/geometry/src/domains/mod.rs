@@ -1,18 +1,26 @@
 //! How faces become the quads and triangles that components are mapped to.
 
+mod bridge;
 mod cap;
+mod closing;
+mod dual;
+mod extrude;
 mod fan;
 mod flip;
 mod frame;
 mod inset;
 mod pieces;
+mod push;
 mod rotate;
 mod select;
 mod split;
 #[cfg(test)]
 mod tests;
 
-pub use cap::{Cap, Capped, cap_holes};
+pub use bridge::{BridgeOptions, Bridged, LoopPairs, bridge_loops};
+pub use cap::{Cap, CapOptions, Capped, cap_holes};
+pub use dual::{Dual, DualBorder, SOURCE_VERTEX, dual};
+pub use extrude::{ExtrudeMode, ExtrudeOptions, ExtrudePart, extrude_faces};
 pub use fan::fan_faces;
 pub use flip::flip_chosen_faces;
 pub use frame::{Fill, FrameOptions, FramePart, Framed, Inset, frame_faces};

@@ -465,15 +465,58 @@ fn checkers_and_stripes_follow_the_quads() {
 fn holes_are_capped_and_solids_close() {
     let tube = crate::test_shapes::cylinder(7, 2);
     for cap in [Cap::Polygon, Cap::Fan] {
-        let capped = cap_holes(&tube, cap, None).unwrap();
+        let options = CapOptions {
+            cap,
+            ..CapOptions::default()
+        };
+        let capped = cap_holes(&tube, &options).unwrap();
         assert_eq!(capped.caps, 2);
         let measured = crate::measure::measure_mesh(&capped.mesh);
         use crate::math::{TAU, sin};
         let volume = 2.0 * 3.5 * sin(TAU / 7.0);
         assert!((measured.volume.unwrap() - volume).abs() < 1e-12);
-        let none = cap_holes(&tube, cap, Some(6)).unwrap();
+        let small = CapOptions {
+            most_edges: Some(6),
+            ..options
+        };
+        let none = cap_holes(&tube, &small).unwrap();
         assert_eq!((none.caps, none.larger), (0, 2));
     }
+}
+
+#[test]
+fn caps_are_chosen_creased_and_coloured() {
+    let tube = crate::test_shapes::cylinder(7, 2);
+    let high = tube.positions().iter().map(|p| p.z - 1.0).collect();
+    let field = Field::new(Domain::Vertex, Quantity::Number, high).unwrap();
+    let options = CapOptions {
+        only: Amount::Field(std::sync::Arc::new(field)),
+        crease: 4.0,
+        material: Some("lid"),
+        ..CapOptions::default()
+    };
+    let capped = cap_holes(&tube, &options).unwrap();
+    assert_eq!((capped.caps, capped.mesh.face_count()), (1, 15));
+    let mesh = &capped.mesh;
+    assert!(
+        mesh.face(14)
+            .iter()
+            .all(|&v| mesh.positions()[v as usize].z > 1.9)
+    );
+    let named: Vec<_> = (0..15)
+        .filter(|&face| mesh.materials().get(face).is_some())
+        .collect();
+    assert_eq!(
+        (named, mesh.materials().get(14).unwrap().name.as_str()),
+        (vec![14], "lid")
+    );
+    let creases = numbers(mesh, CREASE, Domain::Corner);
+    assert!((creases.iter().sum::<f64>() - 7.0 * 2.0 * 4.0).abs() < 1e-12);
+    let wrong = CapOptions {
+        crease: f64::NAN,
+        ..CapOptions::default()
+    };
+    assert!(cap_holes(&tube, &wrong).is_err());
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::math::unit_or_zero;
+use crate::math::{symmetric_axes, unit_or_zero};
 use crate::{GeometryError, Mesh, Monitor, parallel};
 
 /// How far one face is from planar; the conventions differ by up to four times
@@ -121,44 +121,15 @@ fn to_best_plane(count: usize, at: impl Fn(usize) -> DVec3) -> f64 {
             }
         }
     }
-    let normal = least_axis(spread);
+    let (sizes, axes) = symmetric_axes(spread);
+    let least = (0..3).fold(
+        0,
+        |least, k| if sizes[k] < sizes[least] { k } else { least },
+    );
+    let normal = axes[least];
     (0..count)
         .map(|k| arm(k).dot(normal).abs())
         .fold(0.0, f64::max)
-}
-
-/// The unit eigenvector of a symmetric matrix to its least eigenvalue, by
-/// Jacobi rotations (Golub and Van Loan 2013, §8.5).
-fn least_axis(mut m: [[f64; 3]; 3]) -> DVec3 {
-    let mut axes = [DVec3::X, DVec3::Y, DVec3::Z];
-    // Convergence is quadratic; three sweeps usually suffice.
-    for _ in 0..12 {
-        for (p, q) in [(0, 1), (0, 2), (1, 2)] {
-            if m[p][q] == 0.0 {
-                continue;
-            }
-            let theta = (m[q][q] - m[p][p]) / (2.0 * m[p][q]);
-            let t = theta.signum() / (theta.abs() + (theta * theta + 1.0).sqrt());
-            let c = 1.0 / (t * t + 1.0).sqrt();
-            let s = t * c;
-            let r = 3 - p - q;
-            let (pp, qq, pq, pr, qr) = (m[p][p], m[q][q], m[p][q], m[p][r], m[q][r]);
-            m[p][p] = pp - t * pq;
-            m[q][q] = qq + t * pq;
-            (m[p][q], m[q][p]) = (0.0, 0.0);
-            m[p][r] = c * pr - s * qr;
-            m[q][r] = s * pr + c * qr;
-            (m[r][p], m[r][q]) = (m[p][r], m[q][r]);
-            let (u, v) = (axes[p], axes[q]);
-            axes[p] = u * c - v * s;
-            axes[q] = u * s + v * c;
-        }
-    }
-    let least = (0..3).fold(
-        0,
-        |least, k| if m[k][k] < m[least][least] { k } else { least },
-    );
-    unit_or_zero(axes[least])
 }
 
 #[cfg(test)]

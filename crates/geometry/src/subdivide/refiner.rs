@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::mesh::Mesh;
-use crate::topology::{NO_EDGE, Topology};
+use crate::topology::Topology;
 use crate::{GeometryError, Monitor, parallel};
 
 use super::cage::{Cage, refine_polygons, split_polygons};
@@ -30,7 +30,7 @@ impl Refiner {
     ) -> Result<Self, GeometryError> {
         let coarse = Arc::clone(mesh.topology());
         coarse.check_manifold()?;
-        check_edges(&coarse)?;
+        coarse.check_edges()?;
         let sharpness = Sharpness::read(mesh, options.boundary, monitor)?;
         let (cage, before_cage) = if coarse.faces().all(|face| face.len() == 4) {
             let topology = Arc::clone(&coarse);
@@ -183,17 +183,5 @@ impl Refiner {
             },
         )?;
         Ok(out)
-    }
-}
-
-/// Every corner needs an edge that leaves it.
-fn check_edges(topology: &Topology) -> Result<(), GeometryError> {
-    let adjacency = topology.adjacency();
-    match adjacency.corner_edges().iter().position(|&e| e == NO_EDGE) {
-        Some(corner) => Err(GeometryError::RepeatedVertex {
-            face: adjacency.corner_faces()[corner] as usize,
-            vertex: topology.corners()[corner],
-        }),
-        None => Ok(()),
     }
 }

@@ -91,3 +91,15 @@ pub(crate) fn next_in_face(topology: &Topology, corner: u32) -> u32 {
     let next = corner as usize + 1;
     (if next == range.end { range.start } else { next }) as u32
 }
+
+/// The corner before `corner` in its face.
+pub(crate) fn previous_in_face(topology: &Topology, corner: u32) -> u32 {
+    let face = topology.adjacency().corner_faces()[corner as usize] as usize;
+    let range = topology.corner_range(face);
+    let at = if corner as usize == range.start {
+        range.end as u32
+    } else {
+        corner
+    };
+    at - 1
+}

@@ -1,6 +1,7 @@
 //! How the faces round a vertex hang together.
 
-use super::{NO_EDGE, Topology};
+use super::{NO_EDGE, Topology, next_in_face};
+use crate::weld::Sets;
 
 /// Edges a vertex may have before finding its fans needs the heap.
 const USUAL_VALENCE: usize = 32;
@@ -43,6 +44,40 @@ impl Topology {
             }
         }
         fans.max(1)
+    }
+
+    /// The vertex of each corner once vertices are split by fans of faces, and
+    /// the old vertex of each of these. Faces hang together across the edges that
+    /// `joins` (by their numbers); those with other than two faces never join.
+    /// Fans keep the order of vertices and, at one vertex, of their first corners.
+    ///
+    /// The two faces of an edge must pass it in opposite senses
+    /// ([`Topology::check_oriented`]). Cost: O(corners).
+    pub(crate) fn split_fans(&self, joins: impl Fn(usize) -> bool) -> (Vec<u32>, Vec<u32>) {
+        let adjacency = self.adjacency();
+        let mut fans = Sets::new(self.corner_count());
+        for edge in (0..adjacency.edge_count()).filter(|&edge| joins(edge)) {
+            if let [c, d] = *adjacency.edge_corners(edge) {
+                // Opposite senses: each starts where the other one ends.
+                fans.join(c, next_in_face(self, d));
+                fans.join(d, next_in_face(self, c));
+            }
+        }
+        let mut corner_vertex = vec![0; self.corner_count()];
+        let mut sources = Vec::new();
+        for vertex in 0..self.vertex_count() {
+            // Ascending corners meet the root of a fan, its lowest, first.
+            for &corner in adjacency.vertex_corners(vertex) {
+                let root = fans.root(corner);
+                if root == corner {
+                    corner_vertex[corner as usize] = sources.len() as u32;
+                    sources.push(vertex as u32);
+                } else {
+                    corner_vertex[corner as usize] = corner_vertex[root as usize];
+                }
+            }
+        }
+        (corner_vertex, sources)
     }
 
     /// The edges before and after a corner in its face, passing over repeated

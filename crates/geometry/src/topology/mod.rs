@@ -7,7 +7,7 @@ mod fans;
 use std::sync::{Arc, OnceLock};
 
 pub use adjacency::{Adjacency, NO_EDGE};
-pub(crate) use boundary::{BoundaryWalk, next_in_face, walks as boundary_walks};
+pub(crate) use boundary::{BoundaryWalk, next_in_face, previous_in_face, walks as boundary_walks};
 
 use crate::GeometryError;
 use crate::buffer::Buffer;
@@ -217,6 +217,43 @@ impl Topology {
         } else {
             Err(GeometryError::NonManifold { edges })
         }
+    }
+
+    /// Checks that no face names a vertex twice in a row: every corner needs an
+    /// edge that leaves it.
+    ///
+    /// # Errors
+    /// [`GeometryError::RepeatedVertex`] with the first one.
+    pub fn check_edges(&self) -> Result<(), GeometryError> {
+        let adjacency = self.adjacency();
+        match adjacency.corner_edges().iter().position(|&e| e == NO_EDGE) {
+            Some(corner) => Err(GeometryError::RepeatedVertex {
+                face: adjacency.corner_faces()[corner] as usize,
+                vertex: self.corners()[corner],
+            }),
+            None => Ok(()),
+        }
+    }
+
+    /// Checks that the two faces of each edge pass it in opposite senses.
+    ///
+    /// # Errors
+    /// [`GeometryError::Invalid`] naming the first edge and the two faces.
+    pub fn check_oriented(&self) -> Result<(), GeometryError> {
+        let adjacency = self.adjacency();
+        for edge in 0..adjacency.edge_count() {
+            if let [c, d] = *adjacency.edge_corners(edge)
+                && self.corners()[c as usize] == self.corners()[d as usize]
+            {
+                let [a, b] = adjacency.edge(edge);
+                let [f, g] = [c, d].map(|corner| adjacency.corner_faces()[corner as usize]);
+                return Err(GeometryError::Invalid(format!(
+                    "faces {f} and {g} pass their edge {a}-{b} in the same sense; \
+                     turn the faces round so that neighbours agree on the outside"
+                )));
+            }
+        }
+        Ok(())
     }
 
     /// Checks that every face has three or four corners.
