@@ -86,6 +86,13 @@ impl GraphFile {
         });
         Opened { file, sources }
     }
+
+    /// What tells this graph from others between runs.
+    pub(crate) fn identity(&self) -> String {
+        let path = &self.path;
+        let full = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+        full.to_string_lossy().into_owned()
+    }
 }
 
 /// The content of a plain file of at most `largest` bytes.

@@ -65,6 +65,18 @@ fn three_digits(amount: f64) -> String {
     text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
 }
 
+/// A word of a command that a shell takes as it is: in quotes if it must be.
+pub(crate) fn argument(word: &str) -> Cow<'_, str> {
+    let plain = |c: char| c.is_alphanumeric() || "-_./+=:,@%\\".contains(c);
+    if !word.is_empty() && word.chars().all(plain) {
+        return Cow::Borrowed(word);
+    }
+    if cfg!(windows) {
+        return Cow::Owned(format!("\"{word}\""));
+    }
+    Cow::Owned(format!("'{}'", word.replace('\'', r"'\''")))
+}
+
 /// "1 node", "3 nodes".
 pub(crate) fn count(number: usize, noun: &str) -> String {
     if number == 1 {

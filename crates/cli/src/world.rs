@@ -25,6 +25,11 @@ impl RecordingWorld {
         }
     }
 
+    /// Why a file could not be read, without reading it.
+    pub(crate) fn problem(&self, path: &str) -> Option<FileError> {
+        self.disk.file(path).err()
+    }
+
     /// All files that were read so far.
     pub(crate) fn files_read(&self) -> ReadFiles {
         self.read

@@ -87,8 +87,12 @@ impl DiskWorld {
     }
 }
 
-impl World for DiskWorld {
-    fn read(&self, path: &str) -> Result<Arc<[u8]>, FileError> {
+impl DiskWorld {
+    /// The plain file that `path` means, as [`DiskWorld::resolve`] finds it.
+    ///
+    /// # Errors
+    /// As there, and when it is something else than a plain file.
+    pub fn file(&self, path: &str) -> Result<PathBuf, FileError> {
         let found = self.resolve(path)?;
         let fail = |reason: String| FileError {
             path: path.to_owned(),
@@ -103,6 +107,17 @@ impl World for DiskWorld {
             };
             return Err(fail(what.to_owned()));
         }
+        Ok(found)
+    }
+}
+
+impl World for DiskWorld {
+    fn read(&self, path: &str) -> Result<Arc<[u8]>, FileError> {
+        let found = self.file(path)?;
+        let fail = |reason: String| FileError {
+            path: path.to_owned(),
+            reason,
+        };
         #[allow(clippy::disallowed_methods, reason = "this is what nodes read through")]
         let bytes = std::fs::read(&found).map_err(|error| fail(error.to_string()))?;
         Ok(bytes.into())

@@ -6,11 +6,11 @@ use clap::{Args, ValueEnum};
 use tessgraph_graph::Diagnostic;
 use tessgraph_graph::plan::PlanOutput;
 
-use super::{Context, FAILED, OK};
+use super::{Context, status};
 use crate::args::{Setting, existing, setting};
 use crate::diagnostics::{error_count, lines, print};
 use crate::graph_file::GraphFile;
-use crate::outputs::{Folders, targets};
+use crate::outputs::{Folders, InputFile, input_files, targets};
 use crate::text::count;
 
 /// Checks a graph without running it, and shows all of its errors
@@ -58,11 +58,7 @@ pub(crate) fn check(args: &CheckArgs, cx: &mut Context<'_, '_>) -> u8 {
             }
         }
     }
-    if error_count(&diagnostics) == 0 {
-        OK
-    } else {
-        FAILED
-    }
+    status(&diagnostics)
 }
 
 /// How many nodes and outputs the graph has.
@@ -75,6 +71,28 @@ fn examine(args: &CheckArgs, cx: &Context<'_, '_>) -> Result<(usize, usize), Vec
         allowed: &args.allow,
         file: &file.path,
     };
-    targets(&file.plan, &outputs, &folders, cx.registry)?;
-    Ok((file.plan.nodes.len(), outputs.len()))
+    let mut problems = missing_files(&file);
+    if let Err(found) = targets(&file.plan, &outputs, &folders, cx.registry) {
+        problems.extend(found);
+    }
+    if problems.is_empty() {
+        Ok((file.plan.nodes.len(), outputs.len()))
+    } else {
+        Err(problems)
+    }
+}
+
+/// The files that a run would not find or not be allowed to read.
+fn missing_files(file: &GraphFile) -> Vec<Diagnostic> {
+    let problem = |input: InputFile<'_>| {
+        let reason = file.world.problem(&input.path)?;
+        let span = input.span.unwrap_or(input.node.span.clone());
+        let source = &file.plan.source;
+        let error = Diagnostic::error("missing_file", source, span, reason.to_string(), "");
+        Some(error.with_node(&input.node.name))
+    };
+    input_files(&file.plan)
+        .into_iter()
+        .filter_map(problem)
+        .collect()
 }

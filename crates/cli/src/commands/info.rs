@@ -263,7 +263,11 @@ fn verdicts(measures: &MeshMeasures) -> Vec<String> {
             "between faces of opposite sense: some are flipped",
         ),
         (measures.degenerate_faces, "face", "without area"),
-        (measures.duplicate_faces, "face", "that repeat another"),
+        (
+            measures.duplicate_faces,
+            "face",
+            "with the corners of another",
+        ),
         (measures.isolated_vertices, "vertex", "of no face"),
     ];
     for (number, noun, what) in problems {

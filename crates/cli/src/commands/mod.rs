@@ -9,7 +9,9 @@ pub(crate) mod run;
 
 use std::path::PathBuf;
 
+use tessgraph_graph::check::WRONG_SETTING;
 use tessgraph_graph::node::NodeSpec;
+use tessgraph_graph::{Diagnostic, Severity};
 
 use crate::console::Console;
 use crate::diagnostics::{print, without_place};
@@ -20,6 +22,22 @@ pub(crate) const OK: u8 = 0;
 pub(crate) const FAILED: u8 = 1;
 /// The command was used wrongly.
 pub(crate) const USAGE: u8 = 2;
+
+/// The exit status for these diagnostics: where only values from the command
+/// line are wrong, it was used wrongly.
+pub(crate) fn status(diagnostics: &[Diagnostic]) -> u8 {
+    let mut errors = diagnostics
+        .iter()
+        .filter(|diagnostic| diagnostic.severity == Severity::Error)
+        .peekable();
+    if errors.peek().is_none() {
+        OK
+    } else if errors.all(|error| error.code == WRONG_SETTING) {
+        USAGE
+    } else {
+        FAILED
+    }
+}
 
 /// What every command is given.
 pub(crate) struct Context<'a, 'c> {

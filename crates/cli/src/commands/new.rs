@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::{Context, FAILED, OK};
 use crate::atomic::write_if_changed;
-use crate::text::printable;
+use crate::text::{argument, printable};
 
 /// Makes a folder with a small graph and its meshes to start from
 #[derive(Debug, Args)]
@@ -49,9 +49,10 @@ pub(crate) fn new(args: &NewArgs, cx: &mut Context<'_, '_>) -> u8 {
     let graph = printable(&graph.to_string_lossy()).into_owned();
     cx.console.note(&format!(
         "made {shown} with a graph and two meshes; now try\n\n    \
-         tessgraph run {graph}\n\n\
+         tessgraph run {}\n\n\
          which writes {shown}/out/facade.glb. The graph is a text file: change it, or a\n\
-         parameter with `--set thickness=0.3`, and run it again.\n"
+         parameter with `--set thickness=0.3`, and run it again.\n",
+        argument(&graph)
     ));
     OK
 }

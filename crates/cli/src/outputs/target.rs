@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use tessgraph_graph::names::listing;
 use tessgraph_graph::node::NodeSpec;
-use tessgraph_graph::plan::{Origin, PlanOutput, ResultRef};
+use tessgraph_graph::plan::{Origin, PlanNode, PlanOutput, ResultRef};
 use tessgraph_graph::value::Kind;
 use tessgraph_graph::{Diagnostic, Plan, Value};
 
@@ -245,20 +245,42 @@ fn error(
     Diagnostic::error(code, &plan.source, span.clone(), message, remark)
 }
 
-/// The files the graph names as inputs, and the graph file: as they are
-/// written, and where they lie.
-fn input_places(plan: &Plan, folders: &Folders<'_>) -> Vec<(String, PathBuf)> {
-    let mut names = Vec::new();
+/// A file that a node reads.
+pub(crate) struct InputFile<'p> {
+    /// The node.
+    pub(crate) node: &'p PlanNode,
+    /// Where its input is written, if it is not a default.
+    pub(crate) span: Option<std::ops::Range<usize>>,
+    /// The path as written.
+    pub(crate) path: String,
+}
+
+/// The files that the graph names, by literals and parameters, in the plan's
+/// order.
+pub(crate) fn input_files(plan: &Plan) -> Vec<InputFile<'_>> {
+    let mut files = Vec::new();
     for node in &plan.nodes {
         for (spec, input) in node.spec.inputs.iter().zip(&node.inputs) {
             if matches!(spec.kind, Kind::Path | Kind::List(Kind::Path)) {
-                collect_texts(&input.origin, &mut names);
+                let mut paths = Vec::new();
+                collect_texts(&input.origin, &mut paths);
+                files.extend(paths.into_iter().map(|path| InputFile {
+                    node,
+                    span: input.span.clone(),
+                    path,
+                }));
             }
         }
     }
-    let named = names
+    files
+}
+
+/// The files the graph names as inputs, and the graph file: as they are
+/// written, and where they lie.
+fn input_places(plan: &Plan, folders: &Folders<'_>) -> Vec<(String, PathBuf)> {
+    let named = input_files(plan)
         .into_iter()
-        .map(|name| (locate(folders.graph, Path::new(&name)), name));
+        .map(|file| (locate(folders.graph, Path::new(&file.path)), file.path));
     let graph = folders.file.to_string_lossy().into_owned();
     let all = named.chain([(locate(Path::new(""), folders.file), graph)]);
     all.filter_map(|(place, name)| Some((name, place.ok()?)))

@@ -1,6 +1,7 @@
 //! Whole commands, called as the program calls them.
 
 mod commands;
+mod paths;
 mod run;
 mod stand_ins;
 

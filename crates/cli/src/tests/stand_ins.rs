@@ -14,6 +14,7 @@ pub(super) static NODES: &[NodeSpec] = &[
     NodeSpec::of::<Fails>(),
     NodeSpec::of::<Panics>(),
     NodeSpec::of::<Squares>(),
+    NodeSpec::of::<Nothing>(),
 ];
 
 /// Makes a square of one face.
@@ -135,5 +136,17 @@ impl Node for Squares {
 
     fn eval(self, _: &EvalCx<'_>) -> Result<Self::Output, NodeError> {
         (0..self.count).map(|_| square(1.0).map(Arc::new)).collect()
+    }
+}
+
+/// Makes a mesh of nothing.
+#[derive(Inputs)]
+struct Nothing {}
+
+impl Node for Nothing {
+    type Output = Arc<Mesh>;
+
+    fn eval(self, _: &EvalCx<'_>) -> Result<Self::Output, NodeError> {
+        Ok(Arc::new(Mesh::from_faces::<[u32; 3]>(Vec::new(), &[])?))
     }
 }

@@ -20,6 +20,8 @@ mod tests;
 
 use std::sync::Arc;
 
+pub use overrides::WRONG_SETTING;
+
 use crate::diagnostic::Diagnostic;
 use crate::document::{self, Document, Problems};
 use crate::names::quoted;

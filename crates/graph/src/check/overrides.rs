@@ -6,6 +6,10 @@ use crate::value::Value;
 
 use super::scope::suggest;
 
+/// The code of errors about values from outside the file: the file itself may
+/// be right.
+pub const WRONG_SETTING: &str = "wrong_setting";
+
 /// Gives parameters the values of `set`; numbers are in the file's units.
 pub(super) fn apply(params: &mut [Parameter], set: &[(String, String)], problems: &mut Problems) {
     for (name, text) in set {
@@ -19,7 +23,7 @@ pub(super) fn apply(params: &mut [Parameter], set: &[(String, String)], problems
             );
             let names = params.iter().map(|param| param.name.value.as_str());
             let help = suggest(name, names, "its parameters");
-            problems.add(problems.placeless("unknown_name", message).with_help(help));
+            problems.add(problems.placeless(WRONG_SETTING, message).with_help(help));
             continue;
         };
         match parse(&params[place], text) {
@@ -31,14 +35,12 @@ pub(super) fn apply(params: &mut [Parameter], set: &[(String, String)], problems
 
 /// Why a value is refused, and a way out.
 struct Refusal {
-    code: &'static str,
     message: String,
     help: String,
 }
 
 fn parse(param: &Parameter, text: &str) -> Result<Value, Refusal> {
     let wrong = |help: &str| Refusal {
-        code: "wrong_kind",
         message: format!(
             "`{}` takes {}",
             shown(&param.name.value),
@@ -56,22 +58,22 @@ fn parse(param: &Parameter, text: &str) -> Result<Value, Refusal> {
         ParamKind::Choice => param
             .choice(text.trim())
             .map_err(|(message, help)| Refusal {
-                code: "unknown_name",
                 message,
                 help: help.unwrap_or_default(),
             }),
         ParamKind::Number | ParamKind::Integer => {
             let text = text.trim();
+            let whole = param.kind == ParamKind::Integer;
             let number = match (text.parse::<i64>(), text.parse::<f64>()) {
                 (Ok(number), _) => Number::Whole(number),
-                (Err(_), Ok(number)) => Number::Real(number),
-                (Err(_), Err(_)) if param.kind == ParamKind::Integer => {
+                (Err(_), Ok(number)) if whole && number.fract() != 0.0 => {
                     return Err(wrong("write a whole number such as 3"));
                 }
-                (Err(_), Err(_)) => return Err(wrong("write a number such as 0.12, with a point")),
+                (Err(_), Ok(number)) if number.is_finite() => Number::Real(number),
+                (Err(_), _) if whole => return Err(wrong("write a whole number such as 3")),
+                (Err(_), _) => return Err(wrong("write a number such as 0.12, with a point")),
             };
             param.number(number).map_err(|message| Refusal {
-                code: "out_of_range",
                 message,
                 help: "the parameter declares its range; give a value within it".to_owned(),
             })
@@ -86,6 +88,6 @@ fn report(param: &Parameter, text: &str, refusal: Refusal, problems: &mut Proble
         shown(text),
         refusal.message
     );
-    let error = problems.error(refusal.code, &param.span, message, "declared here");
+    let error = problems.error(WRONG_SETTING, &param.span, message, "declared here");
     problems.add(error.with_help(refusal.help));
 }

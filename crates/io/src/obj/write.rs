@@ -300,14 +300,13 @@ pub(crate) fn lost_attributes<'a>(
         .filter(|attribute| !PROVENANCE.contains(&attribute.name()))
         .map(|attribute| format!("`{}`", attribute.name()))
         .collect();
-    if names.is_empty() {
-        Vec::new()
-    } else {
-        vec![format!(
-            "{format} has no place for the attributes {}",
-            names.join(", ")
-        )]
-    }
+    let noun = match names.len() {
+        0 => return Vec::new(),
+        1 => "attribute",
+        _ => "attributes",
+    };
+    let names = names.join(", ");
+    vec![format!("{format} has no place for the {noun} {names}")]
 }
 
 fn names<L>(labels: &Labels<L>, name: impl Fn(&L) -> String) -> Vec<String> {

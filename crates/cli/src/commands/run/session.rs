@@ -1,6 +1,6 @@
 //! Running a graph: what lives as long as the command, and one run.
 
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 use std::time::Instant;
 
 use tessgraph_graph::eval::KeyChange;
@@ -132,10 +132,17 @@ impl<'a> Session<'a> {
     /// Where the wanted outputs go.
     fn settle(&self, file: &GraphFile) -> Result<Vec<Target>, Stopped> {
         let args = self.args;
+        let out = args.out.as_deref();
+        if let Some(out) = out.filter(|out| out.exists() && !out.is_dir()) {
+            let out = printable(&out.to_string_lossy()).into_owned();
+            let help = "name a folder; it is made if it is missing".to_owned();
+            let message = format!("`--out {out}` is a file, not a folder");
+            return Err(usage(message, Some(help)));
+        }
         let outputs = wanted(&file.plan, &args.only)?;
         let folders = Folders {
             graph: &file.folder,
-            out: args.out.as_deref().unwrap_or(&file.folder),
+            out: out.unwrap_or(&file.folder),
             allowed: &args.allow,
             file: &file.path,
         };
@@ -163,7 +170,7 @@ impl<'a> Session<'a> {
             progress.during(live, || engine.evaluate(plan, &results, world, &observer))
         });
         // Also when nobody asks: the next run is compared with this one.
-        let changes = engine.explain(&identity(&file.path), plan, &evaluation);
+        let changes = engine.explain(&file.identity(), plan, &evaluation);
         let (mut written, mut diagnostics) = (Vec::new(), Vec::new());
         if !evaluation.cancelled {
             let read = world.files_read();
@@ -219,7 +226,7 @@ fn wanted<'p>(plan: &'p Plan, only: &[String]) -> Result<Vec<&'p PlanOutput>, St
     }
     let names = || plan.outputs.iter().map(|output| output.path.as_str());
     for name in only {
-        if !names().any(|other| other == name) {
+        if !names().any(|other| tidy(other) == tidy(name)) {
             let all: Vec<_> = names().map(|name| format!("`{name}`")).collect();
             let help = did_you_mean(name, names())
                 .unwrap_or_else(|| format!("its outputs are {}", all.join(", ")));
@@ -230,8 +237,14 @@ fn wanted<'p>(plan: &'p Plan, only: &[String]) -> Result<Vec<&'p PlanOutput>, St
     Ok(plan
         .outputs
         .iter()
-        .filter(|output| only.contains(&output.path))
+        .filter(|output| only.iter().any(|name| tidy(name) == tidy(&output.path)))
         .collect())
+}
+
+/// The path without `./`, however it was written.
+fn tidy(path: &str) -> PathBuf {
+    let parts = Path::new(path).components();
+    parts.filter(|part| *part != Component::CurDir).collect()
 }
 
 /// The engine the arguments ask for; `folder` keeps results unless they name
@@ -248,10 +261,4 @@ fn engine(args: &RunArgs, folder: Option<&Path>, bytes: u64) -> Engine {
         Some(percent) => engine.verifying(percent),
         None => engine,
     }
-}
-
-/// What tells a graph file from others between runs.
-fn identity(path: &Path) -> String {
-    let full = path.canonicalize().unwrap_or_else(|_| path.to_owned());
-    full.to_string_lossy().into_owned()
 }

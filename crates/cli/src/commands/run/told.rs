@@ -4,7 +4,7 @@ use tessgraph_graph::eval::KeyChange;
 
 use super::session::{Finished, Ran, Stopped};
 use super::{ReportFormat, RunArgs};
-use crate::commands::{Context, FAILED, OK};
+use crate::commands::{Context, FAILED, OK, status};
 use crate::diagnostics::{error_count, print, without_place};
 use crate::interrupt::{self, INTERRUPTED};
 use crate::report::{RunReport, human, json};
@@ -32,7 +32,7 @@ pub(super) fn tell(args: &RunArgs, ran: Ran, cx: &mut Context<'_, '_>) -> u8 {
                     outputs: &[],
                 }));
             }
-            FAILED
+            status(&diagnostics)
         }
     }
 }
