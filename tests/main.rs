@@ -10,6 +10,7 @@ mod graphs;
 mod nodes;
 mod peer;
 mod per_vertex;
+mod picture;
 mod recomputation;
 mod several_components;
 mod support;

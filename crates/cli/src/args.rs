@@ -7,6 +7,8 @@ use clap::{Parser, Subcommand};
 
 use crate::commands::cache::CacheArgs;
 use crate::commands::check::CheckArgs;
+use crate::commands::completions::{CompletionsArgs, ManArgs};
+use crate::commands::graph::GraphArgs;
 use crate::commands::info::InfoArgs;
 use crate::commands::new::NewArgs;
 use crate::commands::nodes::NodesArgs;
@@ -34,7 +36,10 @@ pub(crate) enum Command {
     Nodes(NodesArgs),
     Info(InfoArgs),
     New(NewArgs),
+    Graph(GraphArgs),
     Cache(CacheArgs),
+    Completions(CompletionsArgs),
+    Man(ManArgs),
 }
 
 /// A parameter's name and the text of its value.

@@ -13,6 +13,7 @@ mod interrupt;
 mod json;
 mod memory;
 mod outputs;
+mod picture;
 mod places;
 mod process;
 mod progress;
@@ -85,6 +86,9 @@ where
         Command::Check(args) => commands::check::check(args, &mut cx),
         Command::Nodes(args) => commands::nodes::nodes(args, &mut cx),
         Command::Info(args) => commands::info::info(args, &mut cx),
+        Command::Graph(args) => commands::graph::graph(args, &mut cx),
+        Command::Completions(args) => commands::completions::completions(args, &mut cx),
+        Command::Man(args) => commands::completions::man(args, &mut cx),
         Command::Cache(args) => commands::cache::cache(args, &mut cx),
         Command::New(args) => commands::new::new(args, &mut cx),
     };

@@ -2,6 +2,8 @@
 
 pub(crate) mod cache;
 pub(crate) mod check;
+pub(crate) mod completions;
+pub(crate) mod graph;
 pub(crate) mod info;
 pub(crate) mod new;
 pub(crate) mod nodes;

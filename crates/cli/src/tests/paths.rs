@@ -62,7 +62,7 @@ fn a_wrong_value_is_wrong_usage_and_its_help_is_right() {
             "did you mean `side`",
         ),
     ] {
-        for command in ["run", "check"] {
+        for command in ["run", "check", "graph"] {
             let given = desk.command(command, &["--set", set]);
             assert_eq!(given.status, 2, "{set}: {}", given.err);
             assert!(given.err.contains("error[wrong_setting]"), "{}", given.err);
@@ -256,5 +256,41 @@ fn one_of_a_kind_is_said_so() {
             .contains("no place for the attributes `tall`, `wide`"),
         "{}",
         given.err
+    );
+}
+
+#[test]
+fn completions_and_manual_pages_know_every_command() {
+    let desk = Desk::new();
+    let commands = [
+        "run", "check", "nodes", "info", "new", "graph", "cache", "man",
+    ];
+    for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
+        let given = desk.program(&["completions", shell]);
+        assert_eq!((given.status, given.err.as_str()), (0, ""), "{shell}");
+        for command in commands {
+            assert!(given.out.contains(command), "{command} for {shell}");
+        }
+    }
+    assert_eq!(desk.program(&["completions", "cmd"]).status, 2);
+    let page = desk.program(&["man"]);
+    assert_eq!(page.status, 0);
+    for command in commands {
+        assert!(
+            page.out.contains(&format!("tessgraph\\-{command}")),
+            "{command}"
+        );
+    }
+    let page = desk.program(&["man", "run"]);
+    assert!(
+        page.out.contains(".TH") && page.out.contains("\\-\\-threads"),
+        "{}",
+        page.out
+    );
+    let wrong = desk.program(&["man", "rum"]);
+    assert!(
+        wrong.status == 2 && wrong.err.contains("did you mean `run`"),
+        "{}",
+        wrong.err
     );
 }

@@ -6,7 +6,7 @@ use super::cache::{Cache, FileKind};
 use super::key::Part;
 use super::outcome::Evaluation;
 use crate::node::InputSpec;
-use crate::plan::{Origin, Plan, PlanInput};
+use crate::plan::{Origin, Plan, PlanInput, PlanNode};
 use crate::reference::value_text;
 use crate::value::encode::{Decoder, Encoder};
 use crate::value::{Kind, Value};
@@ -112,7 +112,7 @@ pub(super) fn explain(
     plan: &Plan,
     evaluation: &Evaluation,
 ) -> Vec<KeyChange> {
-    let graph = Hasher::new().text("last run").text(identity).finish();
+    let graph = address(identity);
     let before = cache
         .record(FileKind::LastRun, graph, KeyRecord::decode)
         .unwrap_or_default();
@@ -124,6 +124,40 @@ pub(super) fn explain(
     changes
 }
 
+fn address(identity: &str) -> Digest {
+    Hasher::new().text("last run").text(identity).finish()
+}
+
+/// What a node's results took when they were last computed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NodeCost {
+    /// Milliseconds of its evaluation.
+    pub ms: f64,
+    /// Bytes of its results in memory.
+    pub bytes: u64,
+}
+
+/// What the nodes of a plan took, by the keys they had in the graph's last run.
+pub(super) fn last_costs(cache: &Cache, identity: &str, plan: &Plan) -> Vec<Option<NodeCost>> {
+    let record = cache.record(FileKind::LastRun, address(identity), KeyRecord::decode);
+    let record = record.unwrap_or_default();
+    let cost = |planned: &PlanNode| {
+        let mut nodes = record.nodes.iter();
+        let node = nodes.find(|node| node.name == planned.name)?;
+        let entry = cache.entry(node.key?)?;
+        let kind = kind_text(planned);
+        (node.kind == kind).then_some(NodeCost {
+            ms: entry.ms,
+            bytes: entry.bytes,
+        })
+    };
+    plan.nodes.iter().map(cost).collect()
+}
+
+fn kind_text(planned: &PlanNode) -> String {
+    format!("{} version {}", planned.spec.name, planned.spec.version)
+}
+
 impl KeyRecord {
     /// The nodes that came as far as having a key.
     fn of(plan: &Plan, evaluation: &Evaluation) -> Self {
@@ -132,7 +166,7 @@ impl KeyRecord {
             let (key, parts) = keyed.as_ref()?;
             Some(NodeRecord {
                 name: planned.name.clone(),
-                kind: format!("{} version {}", planned.spec.name, planned.spec.version),
+                kind: kind_text(planned),
                 units: plan.units.sign().to_owned(),
                 key: *key,
                 parts: parts.clone(),

@@ -15,7 +15,7 @@ use std::sync::Arc;
 
 use self::cache::Cache;
 pub use cache::{CacheFolder, CacheStats, FolderStats, GcReport, VerifyReport};
-pub use explain::KeyChange;
+pub use explain::{KeyChange, NodeCost};
 pub use outcome::{Evaluation, NodeRun, NodeTime, Observer, Outcome, Silent};
 pub use output::{OutputRecord, WrittenFile};
 
@@ -118,6 +118,15 @@ impl Engine {
         cache.map_or_else(Vec::new, |cache| {
             explain::explain(cache, identity, plan, evaluation)
         })
+    }
+
+    /// What each node of `plan` took when it was last computed, as far as the
+    /// cache folder knows: by the keys that the nodes had in the last run of the
+    /// graph called `identity`, whatever has been edited since. In the plan's
+    /// order; nothing without a folder.
+    pub fn last_costs(&self, identity: &str, plan: &Plan) -> Vec<Option<NodeCost>> {
+        let cache = self.cache.as_deref();
+        cache.map_or_else(Vec::new, |cache| explain::last_costs(cache, identity, plan))
     }
 
     /// What is known about the last writing of the output at `path`, an absolute
