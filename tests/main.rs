@@ -16,3 +16,4 @@ mod several_components;
 mod support;
 mod tidy;
 mod timings;
+mod watch;

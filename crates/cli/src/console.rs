@@ -70,6 +70,11 @@ impl<'a> Console<'a> {
             .and_then(|()| self.err.flush());
     }
 
+    /// Whether data can no longer be written, for whatever reason.
+    pub(crate) fn has_lost_out(&self) -> bool {
+        self.out_failure.is_some()
+    }
+
     /// Why data could not be written, unless its reader simply went away.
     pub(crate) fn out_failure(&self) -> Option<&io::Error> {
         self.out_failure

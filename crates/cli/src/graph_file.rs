@@ -9,7 +9,7 @@ use tessgraph_graph::world::DiskWorld;
 use tessgraph_graph::{Diagnostic, LoadOptions, Plan, load_with};
 
 use crate::diagnostics::without_place;
-use crate::world::RecordingWorld;
+use crate::world::{Listener, RecordingWorld, tell};
 
 /// A graph written by people is some kilobytes; more than this is a mistake.
 const LARGEST_GRAPH: u64 = 64 << 20;
@@ -47,6 +47,18 @@ impl GraphFile {
         set: &[(String, String)],
         allowed: &[PathBuf],
     ) -> Opened {
+        Self::open_telling(path, registry, set, allowed, None)
+    }
+
+    /// [`GraphFile::open`] with somebody who is told of every file that is read
+    /// now and later, the graph file itself among them.
+    pub(crate) fn open_telling(
+        path: &Path,
+        registry: &'static [NodeSpec],
+        set: &[(String, String)],
+        allowed: &[PathBuf],
+        listener: Option<&Listener>,
+    ) -> Opened {
         let failed = |diagnostics| Opened {
             file: Err(diagnostics),
             sources: vec![path.to_path_buf()],
@@ -60,7 +72,16 @@ impl GraphFile {
                 .then(|| "name the graph file inside it".to_owned());
             vec![diagnostic]
         };
-        let bytes = match read_plain(path, LARGEST_GRAPH) {
+        let read = read_plain(path, LARGEST_GRAPH);
+        if let Some(listener) = listener {
+            let content = read.as_ref().ok();
+            tell(
+                listener,
+                path,
+                content.map(|bytes| bytes.as_slice().into()).as_ref(),
+            );
+        }
+        let bytes = match read {
             Ok(bytes) => bytes,
             Err(reason) => return failed(unreadable(reason)),
         };
@@ -69,7 +90,7 @@ impl GraphFile {
             _ => PathBuf::from("."),
         };
         let world = match DiskWorld::new(&folder, allowed) {
-            Ok(disk) => RecordingWorld::new(disk),
+            Ok(disk) => RecordingWorld::new(disk).telling(listener, &folder),
             Err(error) => return failed(unreadable(error.to_string())),
         };
         let options = LoadOptions { set: set.to_vec() };

@@ -13,6 +13,9 @@ const GRACE: Duration = Duration::from_millis(700);
 
 static REQUESTS: AtomicUsize = AtomicUsize::new(0);
 
+/// What is to be done at the first request, besides.
+static WAKE: Mutex<Option<Box<dyn Fn() + Send>>> = Mutex::new(None);
+
 /// Files being written under a temporary name.
 static TEMPORARIES: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
@@ -28,7 +31,15 @@ pub(crate) fn install() {
             std::thread::sleep(GRACE);
             leave(INTERRUPTED);
         });
+        if let Some(wake) = &*WAKE.lock().unwrap_or_else(PoisonError::into_inner) {
+            wake();
+        }
     });
+}
+
+/// Has `wake` called when the work should stop: for work that waits.
+pub(crate) fn on_request(wake: impl Fn() + Send + 'static) {
+    *WAKE.lock().unwrap_or_else(PoisonError::into_inner) = Some(Box::new(wake));
 }
 
 /// Whether the work should stop.

@@ -20,6 +20,7 @@ mod progress;
 mod report;
 mod text;
 mod timings;
+mod watch;
 mod world;
 
 #[cfg(test)]

@@ -15,7 +15,50 @@ const MOST_LINKS: usize = 40;
 /// In words, when `base` cannot be found, a file stands where a folder is
 /// needed, or links lead in a circle.
 pub(crate) fn locate(base: &Path, path: &Path) -> Result<PathBuf, String> {
-    let mut place = existing_part(base)?;
+    follow(existing_part(base)?, path, &mut |_, _| {})
+}
+
+/// All places whose change can change what `path` means: the place it names,
+/// each symbolic link on the way, each folder on the way below `inside`, and,
+/// where the way ends early, the first thing that is missing.
+pub(crate) fn trail(path: &Path, inside: &Path) -> Vec<PathBuf> {
+    let Ok(path) = std::path::absolute(path) else {
+        return Vec::new();
+    };
+    let (mut trail, mut last, mut lost) = (Vec::new(), None, false);
+    let mut met = |place: &Path, found: Met| {
+        if lost {
+            return;
+        }
+        last = Some(place.to_owned());
+        lost = found == Met::Nothing;
+        let matters = match found {
+            Met::Link | Met::Nothing => true,
+            Met::Other => place != inside && place.starts_with(inside),
+        };
+        trail.extend(matters.then(|| place.to_owned()));
+    };
+    // A way that leads nowhere has been followed as far as it goes.
+    let _ = follow(PathBuf::new(), &path, &mut met);
+    trail.extend(last);
+    trail.dedup();
+    trail
+}
+
+/// What is at a place.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Met {
+    Link,
+    Nothing,
+    Other,
+}
+
+/// Goes from `place` along `path`, and tells of everything met on the way.
+fn follow(
+    mut place: PathBuf,
+    path: &Path,
+    met: &mut dyn FnMut(&Path, Met),
+) -> Result<PathBuf, String> {
     let mut rest: VecDeque<Step> = steps(path).into();
     let mut links = 0;
     while let Some(step) = rest.pop_front() {
@@ -26,7 +69,16 @@ pub(crate) fn locate(base: &Path, path: &Path) -> Result<PathBuf, String> {
             }
             Step::Into(name) => {
                 let next = place.join(&name);
-                match fs::symlink_metadata(&next) {
+                let found = fs::symlink_metadata(&next);
+                met(
+                    &next,
+                    match &found {
+                        Ok(found) if found.is_symlink() => Met::Link,
+                        Ok(_) => Met::Other,
+                        Err(_) => Met::Nothing,
+                    },
+                );
+                match found {
                     Ok(found) if found.is_symlink() => {
                         links += 1;
                         if links > MOST_LINKS {
@@ -168,6 +220,43 @@ mod tests {
                 .unwrap_err()
                 .contains("circle")
         );
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_trail_holds_links_folders_inside_and_the_first_thing_missing() {
+        use std::os::unix::fs::symlink;
+        let folder = tempfile::tempdir().unwrap();
+        let root = folder.path().canonicalize().unwrap();
+        fs::create_dir_all(root.join("p/v1/meshes")).unwrap();
+        fs::write(root.join("p/v1/meshes/a.obj"), b"").unwrap();
+        symlink("v1", root.join("p/current")).unwrap();
+        symlink("p", root.join("link")).unwrap();
+        let trail = |path: &str| {
+            let places = trail(&root.join(path), &root.join("p"));
+            let below = places
+                .iter()
+                .map(|place| place.strip_prefix(&root).unwrap());
+            let below: Vec<_> = below
+                .map(|place| place.to_str().unwrap().to_owned())
+                .collect();
+            below.join(" ")
+        };
+        assert_eq!(
+            trail("p/v1/meshes/a.obj"),
+            "p/v1 p/v1/meshes p/v1/meshes/a.obj"
+        );
+        assert_eq!(
+            trail("link/current/meshes/a.obj"),
+            "link p/current p/v1 p/v1/meshes p/v1/meshes/a.obj"
+        );
+        assert_eq!(trail("p/no/b.obj"), "p/no");
+        assert_eq!(
+            trail("p/v1/meshes/a.obj/c"),
+            "p/v1 p/v1/meshes p/v1/meshes/a.obj"
+        );
+        fs::create_dir(root.join("elsewhere")).unwrap();
+        assert_eq!(trail("elsewhere/c.obj"), "elsewhere/c.obj");
     }
 
     #[test]

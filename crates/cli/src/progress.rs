@@ -1,5 +1,6 @@
 //! What happens during a run: a bar for people, and the wish to stop.
 
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
@@ -27,11 +28,12 @@ pub(crate) fn with_running(show: impl FnOnce(&[String])) {
 
 /// An observer that draws a bar on stderr once the work has lasted a while, and
 /// measures the memory of each node.
-pub(crate) struct Progress {
+pub(crate) struct Progress<'a> {
     bar: ProgressBar,
     names: Vec<String>,
     running: Mutex<Vec<Running>>,
     peaks: Mutex<Vec<Option<u64>>>,
+    stop: &'a AtomicBool,
 }
 
 /// A node at work.
@@ -41,9 +43,10 @@ struct Running {
     memory: Span,
 }
 
-impl Progress {
-    /// For nodes of these names, all of them or only some needed.
-    pub(crate) fn new(names: Vec<String>) -> Self {
+impl<'a> Progress<'a> {
+    /// For nodes of these names, all of them or only some needed. The evaluation
+    /// stops when the user asks for it, or when `stop` is set.
+    pub(crate) fn new(names: Vec<String>, stop: &'a AtomicBool) -> Self {
         let bar =
             ProgressBar::with_draw_target(Some(names.len() as u64), ProgressDrawTarget::hidden());
         if let Ok(style) = ProgressStyle::with_template("{spinner} {pos}/{len} {wide_msg}") {
@@ -54,6 +57,7 @@ impl Progress {
             peaks: Mutex::new(vec![None; names.len()]),
             names,
             running: Mutex::default(),
+            stop,
         }
     }
 
@@ -109,7 +113,7 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-impl Observer for Progress {
+impl Observer for Progress<'_> {
     fn started(&self, node: usize) {
         lock(&RUNNING).push(self.names[node].clone());
         let memory = Span::begin();
@@ -149,6 +153,6 @@ impl Observer for Progress {
     }
 
     fn cancelled(&self) -> bool {
-        interrupt::is_requested()
+        interrupt::is_requested() || self.stop.load(Ordering::Relaxed)
     }
 }

@@ -126,7 +126,7 @@ fn row(node: &NodeRun, peak: Option<u64>) -> Vec<String> {
 }
 
 /// "5 nodes: 4 computed, 1 cached in 0.8 s".
-fn summary(report: &RunReport<'_>) -> String {
+pub(crate) fn summary(report: &RunReport<'_>) -> String {
     let counts = OUTCOMES.iter().filter_map(|outcome| {
         let number = report
             .nodes

@@ -1,7 +1,7 @@
 //! The files of a run, with a memory of which were read.
 
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use tessgraph_graph::world::{DiskWorld, FileError, World};
@@ -10,11 +10,17 @@ use tessgraph_graph::world::{DiskWorld, FileError, World};
 /// for as.
 pub(crate) type ReadFiles = BTreeMap<PathBuf, String>;
 
+/// Is told of everything that is read as soon as it is: the absolute path, links
+/// not followed, and the content, if there is a file that may be read.
+pub(crate) type Listener = Arc<dyn Fn(PathBuf, Option<Arc<[u8]>>) + Send + Sync>;
+
 /// Files on disk; remembers where those lie that were read, so that no output
 /// replaces one of them.
 pub(crate) struct RecordingWorld {
     disk: DiskWorld,
     read: Mutex<ReadFiles>,
+    /// Who is told, and the folder that paths are taken from.
+    listener: Option<(Listener, PathBuf)>,
 }
 
 impl RecordingWorld {
@@ -22,12 +28,19 @@ impl RecordingWorld {
         Self {
             disk,
             read: Mutex::default(),
+            listener: None,
         }
     }
 
     /// Why a file could not be read, without reading it.
     pub(crate) fn problem(&self, path: &str) -> Option<FileError> {
         self.disk.file(path).err()
+    }
+
+    /// The same files, taken from `folder`; `listener` is told what is read.
+    pub(crate) fn telling(mut self, listener: Option<&Listener>, folder: &Path) -> Self {
+        self.listener = listener.map(|listener| (Arc::clone(listener), folder.to_owned()));
+        self
     }
 
     /// All files that were read so far.
@@ -48,6 +61,18 @@ impl World for RecordingWorld {
                 .entry(place)
                 .or_insert_with(|| path.to_owned());
         }
-        self.disk.read(path)
+        let content = self.disk.read(path);
+        if let Some((listener, folder)) = &self.listener {
+            tell(listener, &folder.join(path), content.as_ref().ok());
+        }
+        content
+    }
+}
+
+/// Tells a listener of a file by its absolute path.
+pub(crate) fn tell(listener: &Listener, path: &Path, content: Option<&Arc<[u8]>>) {
+    // Only an empty path is none: that names no file.
+    if let Ok(path) = std::path::absolute(path) {
+        listener(path, content.map(Arc::clone));
     }
 }

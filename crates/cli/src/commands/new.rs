@@ -51,7 +51,8 @@ pub(crate) fn new(args: &NewArgs, cx: &mut Context<'_, '_>) -> u8 {
         "made {shown} with a graph and two meshes; now try\n\n    \
          tessgraph run {}\n\n\
          which writes {shown}/out/facade.glb. The graph is a text file: change it, or a\n\
-         parameter with `--set thickness=0.3`, and run it again.\n",
+         parameter with `--set thickness=0.3`, and run it again; with `--watch` it runs\n\
+         again by itself.\n",
         argument(&graph)
     ));
     OK

@@ -11,6 +11,7 @@ use std::fs::File;
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use tessgraph_graph::eval::OutputRecord;
 use tessgraph_graph::{Diagnostic, Engine, Evaluation, Plan};
@@ -64,14 +65,19 @@ impl<'a> Outputs<'a> {
     }
 
     /// Writes everything that could be computed and is not there already;
-    /// `read` are the files that the run read. Stops where the user asks to.
+    /// `read` are the files that the run read. Stops where the user asks to, and
+    /// before the next output where `stop` is set.
     pub(crate) fn write(
         &self,
         evaluation: &Evaluation,
         read: &ReadFiles,
+        stop: &AtomicBool,
     ) -> (Vec<WrittenOutput>, Vec<Diagnostic>) {
         let (mut outputs, mut problems) = (Vec::new(), Vec::new());
         for target in self.targets {
+            if stop.load(Ordering::Relaxed) {
+                break;
+            }
             match self.write_one(target, evaluation, read) {
                 Ok(written) => outputs.extend(written),
                 Err(_) if interrupt::is_requested() => break,
@@ -212,7 +218,7 @@ fn is_foreign_library(path: &Path) -> bool {
 }
 
 /// A path from the current folder, if it lies below it.
-fn shown(path: &Path) -> String {
+pub(crate) fn shown(path: &Path) -> String {
     let here = Path::new(".").canonicalize().ok();
     let below = here.and_then(|here| path.strip_prefix(here).ok());
     printable(&below.unwrap_or(path).to_string_lossy()).into_owned()

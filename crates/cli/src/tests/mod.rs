@@ -4,6 +4,7 @@ mod commands;
 mod paths;
 mod run;
 mod stand_ins;
+mod watch;
 
 use std::path::{Path, PathBuf};
 

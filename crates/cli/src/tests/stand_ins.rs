@@ -1,6 +1,7 @@
 //! Small nodes with which commands are tested.
 
 use std::sync::Arc;
+use std::time::{Duration, Instant};
 
 use tessgraph_geometry::{Labels, Material, Mesh};
 use tessgraph_graph::value::FilePath;
@@ -15,6 +16,7 @@ pub(super) static NODES: &[NodeSpec] = &[
     NodeSpec::of::<Panics>(),
     NodeSpec::of::<Squares>(),
     NodeSpec::of::<Nothing>(),
+    NodeSpec::of::<Waits>(),
 ];
 
 /// Makes a square of one face.
@@ -148,5 +150,27 @@ impl Node for Nothing {
 
     fn eval(self, _: &EvalCx<'_>) -> Result<Self::Output, NodeError> {
         Ok(Arc::new(Mesh::from_faces::<[u32; 3]>(Vec::new(), &[])?))
+    }
+}
+
+/// Waits, unless it is asked to stop.
+#[derive(Inputs)]
+struct Waits {
+    /// What it gives back.
+    value: f64,
+    /// Seconds it takes.
+    seconds: f64,
+}
+
+impl Node for Waits {
+    type Output = f64;
+
+    fn eval(self, cx: &EvalCx<'_>) -> Result<Self::Output, NodeError> {
+        let start = Instant::now();
+        while start.elapsed().as_secs_f64() < self.seconds {
+            cx.monitor().check()?;
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        Ok(self.value)
     }
 }

@@ -12,6 +12,12 @@ use crate::memory::parse_size;
 pub(crate) struct RunArgs {
     /// The graph file
     pub(crate) graph: PathBuf,
+    /// Runs again whenever the graph or a file it reads changes
+    #[arg(long)]
+    pub(crate) watch: bool,
+    /// Looks for changes twice a second, where the system tells of none: on network drives
+    #[arg(long, requires = "watch")]
+    pub(crate) poll: bool,
     /// Gives a parameter another value for this run
     #[arg(long, value_name = "NAME=VALUE", value_parser = setting)]
     pub(crate) set: Vec<Setting>,
@@ -55,7 +61,7 @@ pub(crate) struct RunArgs {
 pub(crate) enum ReportFormat {
     /// A table for people
     Human,
-    /// One JSON object
+    /// One JSON object on a line, one line for each run
     Json,
 }
 

@@ -1,6 +1,7 @@
 //! Running a graph: what lives as long as the command, and one run.
 
 use std::path::{Component, Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use tessgraph_graph::eval::KeyChange;
@@ -12,14 +13,16 @@ use tessgraph_graph::{Diagnostic, Engine, Evaluation, Plan};
 use super::RunArgs;
 use crate::atomic::write_if_changed;
 use crate::commands::{FAILED, USAGE};
-use crate::diagnostics::without_place;
+use crate::diagnostics::{error_count, without_place};
 use crate::graph_file::GraphFile;
+use crate::interrupt;
 use crate::memory::{count_this_thread, default_limit, set_limit};
 use crate::outputs::{Folders, OutputObserver, Outputs, Target, WrittenOutput, targets};
 use crate::places::is_same_file;
 use crate::progress::Progress;
 use crate::text::printable;
 use crate::timings::{self, EVALUATE, Phases};
+use crate::world::Listener;
 
 /// The share of the memory limit that kept results may take.
 const CACHE_SHARE: u64 = 4;
@@ -51,9 +54,26 @@ pub(crate) struct Finished {
     pub(crate) changes: Vec<KeyChange>,
     /// The most memory each node took, where that was measured.
     pub(crate) peaks: Vec<Option<u64>>,
-    pub(crate) cache_warning: Option<String>,
+    /// Whether it was stopped before all outputs were written.
+    pub(crate) stopped: bool,
     pub(crate) outputs: Vec<WrittenOutput>,
     pub(crate) diagnostics: Vec<Diagnostic>,
+}
+
+impl Finished {
+    /// Whether everything that was asked for was made.
+    pub(crate) fn is_ok(&self) -> bool {
+        self.evaluation.is_ok() && error_count(&self.diagnostics) == 0
+    }
+}
+
+/// What somebody else can do about a run.
+#[derive(Default)]
+pub(crate) struct Control {
+    /// Stops the run: it is out of date.
+    pub(crate) stop: AtomicBool,
+    /// Is told of every file the run reads.
+    pub(crate) listener: Option<Listener>,
 }
 
 /// One run and the milliseconds it took.
@@ -113,20 +133,33 @@ impl<'a> Session<'a> {
 
     /// Loads the graph, computes what is wanted and writes it; with `live` a
     /// bar shows progress.
-    pub(crate) fn run(&self, live: bool) -> Ran {
+    pub(crate) fn run(&self, live: bool, control: &Control) -> Ran {
         let start = Instant::now();
         let result = self.pool.install(|| {
             let mut phases = Phases::starting(start);
             let args = self.args;
             let opened = phases.during("check", || {
-                GraphFile::open(&args.graph, self.registry, &args.set, &args.allow)
+                let (set, allow, listener) = (&args.set, &args.allow, control.listener.as_ref());
+                GraphFile::open_telling(&args.graph, self.registry, set, allow, listener)
             });
             let file = opened.file.map_err(Stopped::Graph)?;
             let targets = self.settle(&file)?;
-            Ok(self.make(&file, &targets, live, phases))
+            Ok(self.make(&file, &targets, live, phases, &control.stop))
         });
         let ms = start.elapsed().as_secs_f64() * 1000.0;
         Ran { result, ms }
+    }
+
+    /// Returns when all results are kept that are to be, and says why they could
+    /// not be, if so.
+    pub(crate) fn close(&self) -> Option<String> {
+        self.engine.flush();
+        self.engine.cache_warning()
+    }
+
+    /// Why results are not kept for later, if that is known by now.
+    pub(crate) fn cache_warning(&self) -> Option<String> {
+        self.engine.cache_warning()
     }
 
     /// Where the wanted outputs go.
@@ -156,11 +189,12 @@ impl<'a> Session<'a> {
         targets: &[Target],
         live: bool,
         mut phases: Phases,
+        stop: &AtomicBool,
     ) -> Finished {
         let (engine, plan, world) = (&self.engine, &file.plan, &file.world);
         let results: Vec<_> = targets.iter().map(|target| target.result).collect();
         let names = plan.nodes.iter().map(|node| node.name.clone()).collect();
-        let progress = Progress::new(names);
+        let progress = Progress::new(names, stop);
         let outputs = Outputs::new(plan, targets, engine);
         let observer = OutputObserver {
             inner: &progress,
@@ -175,7 +209,7 @@ impl<'a> Session<'a> {
         if !evaluation.cancelled {
             let read = world.files_read();
             (written, diagnostics) =
-                phases.during("write outputs", || outputs.write(&evaluation, &read));
+                phases.during("write outputs", || outputs.write(&evaluation, &read, stop));
             let kept = targets.iter().map(|target| &target.path).chain(read.keys());
             diagnostics.extend(self.write_timings(
                 &phases,
@@ -184,11 +218,10 @@ impl<'a> Session<'a> {
                 kept.chain([&file.path]),
             ));
         }
-        engine.flush();
         Finished {
             changes,
             peaks: progress.peaks(),
-            cache_warning: engine.cache_warning(),
+            stopped: stop.load(Ordering::Relaxed) || interrupt::is_requested(),
             evaluation,
             outputs: written,
             diagnostics,

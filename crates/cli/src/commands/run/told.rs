@@ -5,43 +5,43 @@ use tessgraph_graph::eval::KeyChange;
 use super::session::{Finished, Ran, Stopped};
 use super::{ReportFormat, RunArgs};
 use crate::commands::{Context, FAILED, OK, status};
-use crate::diagnostics::{error_count, print, without_place};
-use crate::interrupt::{self, INTERRUPTED};
+use crate::diagnostics::{print, without_place};
+use crate::interrupt::INTERRUPTED;
 use crate::report::{RunReport, human, json};
 use crate::text::{Align, printable, table};
 
-/// Shows what a run came to, and gives the exit status.
-pub(super) fn tell(args: &RunArgs, ran: Ran, cx: &mut Context<'_, '_>) -> u8 {
-    let Ran { result, ms } = ran;
-    match result {
-        Ok(finished) => finish(args, &finished, ms, cx),
+/// Shows everything a person has to know of a run, except its closing report,
+/// and gives the exit status. `warning` is about the cache.
+pub(crate) fn details(
+    args: &RunArgs,
+    ran: &Ran,
+    warning: Option<String>,
+    cx: &mut Context<'_, '_>,
+) -> u8 {
+    match &ran.result {
+        Ok(finished) => notes(args, finished, warning, cx),
         Err(Stopped::Before {
             status,
             code,
             message,
             help,
-        }) => cx.fail(status, code, message, help),
+        }) => cx.fail(*status, code, message, help.clone()),
         Err(Stopped::Graph(diagnostics)) => {
-            print(cx.console, &diagnostics);
-            if args.report == ReportFormat::Json {
-                cx.console.data(&json(&RunReport {
-                    ok: false,
-                    ms,
-                    nodes: &[],
-                    peaks: &[],
-                    outputs: &[],
-                }));
-            }
-            status(&diagnostics)
+            print(cx.console, diagnostics);
+            status(diagnostics)
         }
     }
 }
 
-fn finish(args: &RunArgs, finished: &Finished, ms: f64, cx: &mut Context<'_, '_>) -> u8 {
-    let evaluation = &finished.evaluation;
-    print(cx.console, &evaluation.diagnostics);
+fn notes(
+    args: &RunArgs,
+    finished: &Finished,
+    warning: Option<String>,
+    cx: &mut Context<'_, '_>,
+) -> u8 {
+    print(cx.console, &finished.evaluation.diagnostics);
     print(cx.console, &finished.diagnostics);
-    if evaluation.cancelled || interrupt::is_requested() {
+    if finished.stopped {
         let stopped = without_place("interrupted", "", "interrupted; nothing more was written");
         print(cx.console, &[stopped]);
         return INTERRUPTED;
@@ -52,25 +52,39 @@ fn finish(args: &RunArgs, finished: &Finished, ms: f64, cx: &mut Context<'_, '_>
             cx.console.note(&printable(&note));
         }
     }
-    if let Some(warning) = &finished.cache_warning {
+    if let Some(warning) = warning {
         cx.console.note(&printable(&format!("note: {warning}\n")));
     }
     if args.explain {
         cx.console.note(&printable(&explained(&finished.changes)));
     }
-    let ok = evaluation.is_ok() && error_count(&finished.diagnostics) == 0;
-    let report = RunReport {
-        ok,
-        ms,
-        nodes: &evaluation.nodes,
-        peaks: &finished.peaks,
-        outputs: &finished.outputs,
+    if finished.is_ok() { OK } else { FAILED }
+}
+
+/// Shows the report of a run in the form that was asked for; people are told
+/// nothing more of one that did not begin.
+pub(crate) fn closing(args: &RunArgs, ran: &Ran, cx: &mut Context<'_, '_>) {
+    let report = match &ran.result {
+        Ok(finished) => RunReport {
+            ok: finished.is_ok(),
+            ms: ran.ms,
+            nodes: &finished.evaluation.nodes,
+            peaks: &finished.peaks,
+            outputs: &finished.outputs,
+        },
+        Err(_) => RunReport {
+            ok: false,
+            ms: ran.ms,
+            nodes: &[],
+            peaks: &[],
+            outputs: &[],
+        },
     };
-    match args.report {
-        ReportFormat::Human => cx.console.note(&human(&report)),
-        ReportFormat::Json => cx.console.data(&json(&report)),
+    match (args.report, &ran.result) {
+        (ReportFormat::Json, _) => cx.console.data(&json(&report)),
+        (ReportFormat::Human, Ok(_)) => cx.console.note(&human(&report)),
+        (ReportFormat::Human, Err(_)) => {}
     }
-    if ok { OK } else { FAILED }
 }
 
 /// What has changed since the last run, a line for each input.
