@@ -1,6 +1,6 @@
 //! What is known about a node's results under one key.
 
-use tessgraph_geometry::digest::Digest;
+use tessgraph_geometry::digest::{Digest, Hasher};
 
 use crate::node::FileUse;
 use crate::value::Value;
@@ -42,6 +42,20 @@ impl Known {
     }
 }
 
+/// The key of a node together with the contents of further files.
+pub(in crate::eval) fn key_with_files(key: Digest, files: &[FileUse]) -> Digest {
+    let mut hasher = Hasher::new();
+    hasher.text("with files").digest(key);
+    for file in files {
+        hasher.number(file.input as u64).text(&file.relative);
+        match file.content {
+            Some(content) => hasher.number(1).digest(content),
+            None => hasher.number(0),
+        };
+    }
+    hasher.finish()
+}
+
 /// Whether the value is stored within its entry.
 fn is_small(value: &Value) -> bool {
     match value {
@@ -59,6 +73,16 @@ fn is_small(value: &Value) -> bool {
 }
 
 impl Entry {
+    /// The keys that the entry is kept under. One that depends on further files
+    /// has two: under the node's key stands the latest, which says what files
+    /// these are, and under another each that there ever was, by their contents.
+    pub(super) fn keys(&self, key: Digest) -> Vec<Digest> {
+        if self.files.is_empty() {
+            return vec![key];
+        }
+        vec![key, key_with_files(key, &self.files)]
+    }
+
     /// The entry as bytes.
     pub(super) fn encode(&self) -> Vec<u8> {
         let mut out = Encoder::new();

@@ -24,7 +24,7 @@ use self::writer::{Writer, topology_of};
 use crate::value::Value;
 use crate::value::encode::{Decoder, decode_topology};
 
-pub(super) use entry::{Entry, Known};
+pub(super) use entry::{Entry, Known, key_with_files};
 pub(super) use frame::FileKind;
 pub use maintain::{CacheFolder, FolderStats, GcReport, VerifyReport};
 pub(super) use writer::ToStore;
@@ -183,7 +183,9 @@ impl Cache {
                 lock(&self.values).insert(known.digest, value, entry.ms);
             }
         }
-        self.remember(key, entry);
+        for key in entry.keys(key) {
+            self.remember(key, entry);
+        }
     }
 
     /// Has results kept on disk, soon.

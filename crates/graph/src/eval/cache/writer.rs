@@ -101,7 +101,9 @@ fn store(disk: &Disk, work: &ToStore) {
             return;
         }
     }
-    disk.write(FileKind::Entry, work.key, entry.ms, &entry.encode());
+    for key in entry.keys(work.key) {
+        disk.write(FileKind::Entry, key, entry.ms, &entry.encode());
+    }
 }
 
 /// Writes a value and its topologies; `false` if it is of a type that is never

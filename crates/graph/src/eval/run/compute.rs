@@ -7,9 +7,9 @@ use std::time::Instant;
 use tessgraph_geometry::Monitor;
 use tessgraph_geometry::digest::Digest;
 
-use super::Run;
 use super::prepare::Prepared;
 use super::state::Done;
+use super::{Run, provenance};
 use crate::NodeError;
 use crate::eval::cache::{Entry, Known, ToStore};
 use crate::eval::outcome::{NodeTime, Outcome};
@@ -39,7 +39,8 @@ impl Run<'_> {
             run,
             error: None,
             results: Vec::new(),
-            provenance: prepared.provenance,
+            provenance: provenance(prepared.provenance, &files),
+            files: files.clone(),
             fresh: true,
             parts: prepared.parts,
             key: prepared.key,

@@ -15,7 +15,7 @@ use tessgraph_geometry::digest::Digest;
 
 use self::prepare::Prepared;
 use self::state::{Done, NodeState, Task, Unready, lock, wire};
-use super::cache::{Cache, Entry};
+use super::cache::{Cache, Entry, key_with_files};
 use super::files::RunFiles;
 use super::outcome::{Evaluation, NodeRun, Observer, Outcome};
 use super::{Engine, Values};
@@ -112,7 +112,7 @@ impl<'a> Run<'a> {
                 (Some(values), Ok(prepared)) if prepared.paths == files => {
                     let entry = Entry {
                         results: done.results.clone(),
-                        files: Vec::new(),
+                        files: done.files.clone(),
                         warnings: done.run.warnings.clone(),
                         ms: done.run.ms,
                         bytes: done.run.bytes as u64,
@@ -251,6 +251,7 @@ impl<'a> Run<'a> {
             error: None,
             results: Vec::new(),
             provenance: Digest::of(&[]),
+            files: Vec::new(),
             fresh,
             parts: Vec::new(),
             key: None,
@@ -302,12 +303,23 @@ impl<'a> Run<'a> {
 
     /// What is known of the node's results; no value is loaded.
     fn look_up(&self, prepared: &Prepared) -> Option<Arc<Entry>> {
-        let entry = self.cache?.entry(prepared.key?)?;
-        let same = |file: &FileUse| {
+        let (cache, key) = (self.cache?, prepared.key?);
+        let latest = cache.entry(key)?;
+        let now = |file: &FileUse| {
             let path = prepared.paths.get(file.input).map(|path| file.beside(path));
-            path.is_some_and(|path| self.files.digest(&path) == file.content)
+            let content = path.and_then(|path| self.files.digest(&path));
+            FileUse {
+                content,
+                ..file.clone()
+            }
         };
-        entry.files.iter().all(same).then_some(entry)
+        let files: Vec<FileUse> = latest.files.iter().map(now).collect();
+        if files == latest.files {
+            return Some(latest);
+        }
+        // They may have been as they are now before.
+        let entry = cache.entry(key_with_files(key, &files))?;
+        (entry.files == files).then_some(entry)
     }
 
     fn reused(&self, node: usize, entry: &Entry, prepared: Prepared) -> Done {
@@ -324,11 +336,22 @@ impl<'a> Run<'a> {
             run,
             error: None,
             results: entry.results.clone(),
-            provenance: prepared.provenance,
+            provenance: provenance(prepared.provenance, &entry.files),
+            files: entry.files.clone(),
             fresh,
             parts: prepared.parts,
             key: prepared.key,
             time: None,
         }
+    }
+}
+
+/// What a node was made from, with the files that were found only while it was
+/// evaluated.
+fn provenance(prepared: Digest, files: &[FileUse]) -> Digest {
+    if files.is_empty() {
+        prepared
+    } else {
+        key_with_files(prepared, files)
     }
 }

@@ -9,6 +9,7 @@ use crate::NodeError;
 use crate::eval::cache::Known;
 use crate::eval::explain::KeyPart;
 use crate::eval::outcome::{NodeRun, NodeTime};
+use crate::node::FileUse;
 use crate::plan::{Plan, ResultRef};
 use crate::value::Value;
 
@@ -37,6 +38,8 @@ pub(super) struct Done {
     /// What is known about each result; nothing unless the node is done.
     pub(super) results: Vec<Known>,
     pub(super) provenance: Digest,
+    /// Files that it found only while it was evaluated.
+    pub(super) files: Vec<FileUse>,
     /// Whether it or anything above it was computed in this run.
     pub(super) fresh: bool,
     /// What its key was made of, one per input.
