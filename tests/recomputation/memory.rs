@@ -1,4 +1,5 @@
-//! What is computed again after an edit, and what is not.
+//! An engine that keeps results in memory only: what it finds again, and what
+//! it must not keep.
 
 use tessgraph_graph::world::MemoryWorld;
 use tessgraph_graph::{Engine, Outcome, Silent};
@@ -70,62 +71,6 @@ fn the_first_run_computes_everything_and_the_second_nothing() {
         "{first:?}"
     );
     assert_eq!(session.changes(GRAPH), [""; 0]);
-}
-
-#[test]
-fn names_layout_comments_and_order_mean_nothing() {
-    let session = Session::new();
-    session.run(GRAPH);
-    let none = [""; 0];
-    assert_eq!(session.changes(&GRAPH.replace("surface", "skin")), none);
-    assert_eq!(
-        session.changes(&GRAPH.replace("nodes: {", "nodes: { // all of them\n\n")),
-        none
-    );
-    assert_eq!(session.changes(&GRAPH.replace("0.1", "0.10")), none);
-    let moved = GRAPH
-        .replace("        \"cage\": ReadMesh(path: \"cage.obj\"),\n", "")
-        .replace(
-            "        \"base_size\"",
-            "        \"cage\": ReadMesh(path: \"cage.obj\"),\n        \"base_size\"",
-        );
-    assert_ne!(moved, GRAPH);
-    assert_eq!(session.changes(&moved), none);
-}
-
-#[test]
-fn a_parameter_reaches_what_uses_it_and_comes_back_for_nothing() {
-    let session = Session::new();
-    session.run(GRAPH);
-    let thicker = GRAPH.replace("\"t\": 0.1", "\"t\": 0.2");
-    assert_eq!(
-        session.changes(&thicker),
-        ["shell computed", "size computed"]
-    );
-    assert_eq!(session.changes(GRAPH), [""; 0]);
-}
-
-#[test]
-fn an_equal_result_cuts_a_change_off() {
-    let mut session = Session::new();
-    session.run(GRAPH);
-    // Another file, the same mesh: everything below the reader is cut off.
-    session
-        .world
-        .insert("cage.obj", format!("# redrawn\n{CAGE}").as_bytes());
-    let expected = ["base_size", "normals", "shell", "size", "surface"];
-    let mut expected: Vec<_> = expected.map(|node| format!("{node} cut_off")).to_vec();
-    expected.insert(1, "cage computed".to_owned());
-    assert_eq!(session.changes(GRAPH), expected);
-}
-
-#[test]
-fn units_count_where_they_are_read() {
-    let session = Session::new();
-    session.run(GRAPH);
-    // In centimetres the file's numbers mean another size.
-    let smaller = GRAPH.replace("version: 1,", "version: 1, units: Cm,");
-    assert_eq!(session.changes(&smaller).len(), 6);
 }
 
 #[test]
