@@ -7,7 +7,7 @@ use tessgraph_graph::check::LoadOptions;
 use tessgraph_graph::world::MemoryWorld;
 use tessgraph_graph::{Engine, Kind, NodeSpec, Observer, Outcome, Quantity, Silent, Value};
 
-use super::{CAGE, GRAPH, MEMORY, Run};
+use super::{CAGE, GRAPH, MEMORY, Run, files_of};
 use crate::support;
 
 /// What changed against the last run in the folder, as lines.
@@ -62,6 +62,25 @@ fn changes_are_followed_down_to_the_edited_input() {
     let moved = explained(&renamed, folder.path(), &cage);
     assert_eq!(moved[0], "cage.path: cage.obj -> cage.obj");
     assert_eq!(moved[1], "skin.mesh: cage -> cage from cage");
+}
+
+#[test]
+fn a_damaged_record_of_the_last_run_counts_as_none() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let first = explained(GRAPH, folder.path(), CAGE);
+    let records = files_of(&folder.path().join("runs"));
+    let [record] = records.as_slice() else {
+        panic!("{records:?}");
+    };
+    #[allow(clippy::disallowed_methods, reason = "tests read their own files")]
+    let whole = std::fs::read(record).expect("a record");
+    for at in 0..whole.len() {
+        let mut bytes = whole.clone();
+        bytes[at] ^= 0x21;
+        std::fs::write(record, &bytes).expect("written");
+        assert_eq!(explained(GRAPH, folder.path(), CAGE), first, "byte {at}");
+    }
+    assert_eq!(explained(GRAPH, folder.path(), CAGE), [""; 0]);
 }
 
 #[test]

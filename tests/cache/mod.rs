@@ -3,6 +3,7 @@
 mod damage;
 mod edits;
 mod explain;
+mod faults;
 mod folder;
 mod outputs;
 mod sharing;
