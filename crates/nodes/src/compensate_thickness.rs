@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use tessgraph_geometry::compensate::{self, Compensate, CompensateOptions, SideReport};
+use tessgraph_geometry::diffuse;
 use tessgraph_geometry::surface::Border;
 use tessgraph_geometry::{Amount, Directions, Mesh, list_ids};
 use tessgraph_graph::{EvalCx, Node, NodeError};
@@ -98,10 +99,16 @@ pub(crate) struct Compensated {
     /// Widest angle between a direction and the normal.
     #[output(unit = angle)]
     largest_tilt: f64,
+    /// Smallest cosine of a direction to the normal of a face at its vertex; at
+    /// 0 and below the thickness is inverted there.
+    least_cosine: f64,
+    /// Faces that a direction turns against, or lies in: inverted thickness.
+    inverted: usize,
 }
 
 impl Node for CompensateThickness {
     type Output = Compensated;
+    const VERSION: u32 = 2;
 
     fn eval(self, cx: &EvalCx<'_>) -> Result<Self::Output, NodeError> {
         let options = CompensateOptions {
@@ -119,6 +126,7 @@ impl Node for CompensateThickness {
             &options,
             cx.monitor(),
         )?;
+        let inverted = diffuse::inverted(&self.mesh, &self.directions, cx.monitor())?;
         warn(cx, "outward", &found.outward);
         warn(cx, "inward", &found.inward);
         let sides = [&found.outward, &found.inward];
@@ -137,6 +145,8 @@ impl Node for CompensateThickness {
                 .map(|side| side.evaluations.cast_signed())
                 .sum(),
             largest_tilt: found.largest_tilt,
+            least_cosine: inverted.least_cosine,
+            inverted: inverted.faces.len(),
             directions: Arc::new(found.directions),
         })
     }
@@ -151,13 +161,18 @@ fn warn(cx: &EvalCx<'_>, side: &str, report: &SideReport) {
             .map(|unsolved| unsolved.vertex)
             .collect();
         cx.warn(format!(
-            "{side}, no solution at {} of {} vertices: {}; vertex {} reaches {} of {}",
+            "{side}, no solution at {} of {} vertices: {}; vertex {} reaches {} of {}{}",
             ids.len(),
             total(report),
             list_ids(&ids),
             first.vertex,
             cx.length(first.reached),
             cx.length(first.wanted),
+            if 10 * ids.len() > total(report) {
+                NO_ROOM
+            } else {
+                ""
+            },
         ));
     }
     if !report.border_clipped.is_empty() {
@@ -182,6 +197,10 @@ fn warn(cx: &EvalCx<'_>, side: &str, report: &SideReport) {
         ));
     }
 }
+
+/// Said where over a tenth of the vertices has no solution.
+const NO_ROOM: &str = "; along these directions the surface has no room for this thickness: \
+                       lead them elsewhere with TargetDirections, or make it thinner";
 
 fn total(report: &SideReport) -> usize {
     report.solved + report.extended + report.border_clipped.len() + report.unsolved.len()

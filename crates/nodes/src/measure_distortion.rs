@@ -11,7 +11,8 @@ use tessgraph_macros::{Inputs, Outputs};
 /// Every edge length and every angle of a copy is compared with the component's
 /// own. With `scaled`, a copy of another size but the same shape counts as
 /// undistorted. `field` and `angles` show the largest changes of the component
-/// that each face belongs to.
+/// that each face belongs to. A copy is `inverted` where directions run into
+/// each other below its height: it is folded over there, or inside out.
 ///
 /// ```ron
 /// Graph(version: 1, nodes: {
@@ -49,6 +50,8 @@ pub(crate) struct Changes {
     /// Mean over the components of their largest change of an angle.
     #[output(unit = angle)]
     mean_angle_change: f64,
+    /// Components that are folded over somewhere or inside out.
+    inverted: usize,
     /// Largest change of an edge length in each face's component.
     field: Arc<Field>,
     /// Largest change of an angle in each face's component.
@@ -58,6 +61,7 @@ pub(crate) struct Changes {
 
 impl Node for MeasureDistortion {
     type Output = Changes;
+    const VERSION: u32 = 2;
 
     fn eval(self, cx: &EvalCx<'_>) -> Result<Self::Output, NodeError> {
         let found = measure::distortion(&self.mesh, &self.component, self.scaled, cx.monitor())
@@ -70,6 +74,7 @@ impl Node for MeasureDistortion {
             mean_length_change: mean(&found.length_changes),
             max_angle_change: max(&found.angle_changes),
             mean_angle_change: mean(&found.angle_changes),
+            inverted: found.inverted.iter().filter(|&&inverted| inverted).count(),
             field: Arc::new(found.length_field),
             angles: Arc::new(found.angle_field),
         })

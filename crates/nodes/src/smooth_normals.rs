@@ -93,6 +93,7 @@ pub(crate) enum LaplacianChoice {
 
 impl Node for SmoothNormals {
     type Output = Arc<Directions>;
+    const VERSION: u32 = 2;
 
     fn eval(self, cx: &EvalCx<'_>) -> Result<Self::Output, NodeError> {
         let start = match &self.directions {
@@ -112,8 +113,9 @@ impl Node for SmoothNormals {
         let inverted = diffuse::inverted(&self.mesh, &smooth, cx.monitor())?;
         if !inverted.vertices.is_empty() {
             cx.warn(format!(
-                "directions turn against faces {} (at vertices {}): thickness is inverted there; \
-                 use fewer iterations or `keep_side: true`",
+                "directions turn against {} faces: {} (at vertices {}); thickness is inverted \
+                 there: use fewer iterations or `keep_side: true`",
+                inverted.faces.len(),
                 list_ids(&inverted.faces),
                 list_ids(&inverted.vertices),
             ));

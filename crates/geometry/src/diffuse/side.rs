@@ -15,13 +15,16 @@ const LEAST: f64 = 0.01;
 const STEPS: usize = 64;
 
 /// Vertices and faces where directions turn the thickness inside out.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Inverted {
     /// Vertices whose direction D has D · face normal <= 0 for a face round
     /// them, ascending.
     pub vertices: Vec<u32>,
     /// Those faces, ascending.
     pub faces: Vec<u32>,
+    /// The smallest D^ · face normal of all vertices and the faces round them; 1
+    /// where there is nothing to look at.
+    pub least_cosine: f64,
 }
 
 /// Finds inverted thickness (§5): directions that leave an adjacent face
@@ -40,26 +43,38 @@ pub fn inverted(
     directions.check(mesh)?;
     let normals = face_normals(mesh, monitor)?;
     let symmetric = directions.is_symmetric();
-    let behind = |vertex: u32, face: usize| {
-        let against = |vector: DVec3| vector != DVec3::ZERO && vector.dot(normals[face]) <= 0.0;
-        normals[face] != DVec3::ZERO
-            && (against(directions.outward()[vertex as usize])
-                || (!symmetric && against(directions.inward()[vertex as usize])))
+    let cosine = |vector: DVec3, face: usize| match unit_or_zero(vector) {
+        DVec3::ZERO => 1.0,
+        _ if normals[face] == DVec3::ZERO => 1.0,
+        unit => unit.dot(normals[face]),
     };
-    let bad_faces = parallel::map(mesh.face_count(), monitor, |face| {
-        mesh.face(face).iter().any(|&vertex| behind(vertex, face))
+    let least = |vertex: u32, face: usize| {
+        let outward = cosine(directions.outward()[vertex as usize], face);
+        if symmetric {
+            outward
+        } else {
+            outward.min(cosine(directions.inward()[vertex as usize], face))
+        }
+    };
+    let cosines = parallel::map(mesh.face_count(), monitor, |face| {
+        let corners = mesh.face(face).iter();
+        corners.fold(1.0f64, |cosine, &vertex| cosine.min(least(vertex, face)))
     })?;
-    let faces: Vec<u32> = (0..bad_faces.len() as u32)
-        .filter(|&face| bad_faces[face as usize])
+    let faces: Vec<u32> = (0..cosines.len() as u32)
+        .filter(|&face| cosines[face as usize] <= 0.0)
         .collect();
     let corners = faces.iter().flat_map(|&face| {
         let vertices = mesh.face(face as usize).iter().copied();
-        vertices.filter(move |&vertex| behind(vertex, face as usize))
+        vertices.filter(move |&vertex| least(vertex, face as usize) <= 0.0)
     });
     let mut vertices: Vec<u32> = corners.collect();
     vertices.sort_unstable();
     vertices.dedup();
-    Ok(Inverted { vertices, faces })
+    Ok(Inverted {
+        vertices,
+        faces,
+        least_cosine: cosines.into_iter().fold(1.0, f64::min),
+    })
 }
 
 /// Turns each direction round that points against its vertex normal.

@@ -308,10 +308,9 @@ fn keeping_the_side_leaves_nothing_inverted() {
             ..options
         };
         let kept = diffuse(&ridge, &lean, &kept, &Unmonitored).unwrap();
-        assert_eq!(
-            inverted(&ridge, &kept, &Unmonitored).unwrap(),
-            Inverted::default()
-        );
+        let none = inverted(&ridge, &kept, &Unmonitored).unwrap();
+        assert!(none.vertices.is_empty() && none.faces.is_empty());
+        assert!(none.least_cosine > 0.0, "{}", none.least_cosine);
         assert_unit(kept.outward());
     }
 }

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::inversion::inverted;
 use crate::array::COMPONENT_FACE;
 use crate::intersect::components;
 use crate::math::angle_between;
@@ -15,6 +16,10 @@ pub struct Distortion {
     pub length_changes: Vec<f64>,
     /// Largest change of a corner's angle in each component, in radians.
     pub angle_changes: Vec<f64>,
+    /// Whether each component is folded over somewhere or inside out: an edge
+    /// between two of its faces more than 30 degrees from flat spans, with their
+    /// middles, a volume of the other sign than in the component.
+    pub inverted: Vec<bool>,
     /// `length_changes` of each face's component.
     pub length_field: Field,
     /// `angle_changes` of each face's component.
@@ -36,7 +41,7 @@ struct Sums {
 /// compared after each copy is brought to the component's size (equal sums of
 /// edge lengths), so that a copy of other size but equal shape counts as
 /// undistorted. Edges without length in the component are left out. Cost:
-/// O(corners).
+/// O(corners + faces · log faces).
 ///
 /// # Errors
 /// [`GeometryError::NoAttribute`] for a mesh that is no array,
@@ -79,6 +84,7 @@ pub fn distortion(
             }
         }
     }
+    let inverted = inverted(mesh, component, &originals, &of_face, count);
     let angle_changes: Vec<f64> = sums.iter().map(|sums| sums.angle).collect();
     let field = |quantity, values: &[f64]| {
         let at = |face: usize| values[of_face[face] as usize];
@@ -93,6 +99,7 @@ pub fn distortion(
         angle_field: field(Quantity::Angle, &angle_changes)?,
         length_changes,
         angle_changes,
+        inverted,
     })
 }
 
@@ -171,6 +178,27 @@ mod tests {
         assert!((found.length_changes[0] - (2f64.sqrt() - 1.0)).abs() < 1e-14);
         assert!((found.angle_changes[0] - crate::math::PI / 4.0).abs() < 1e-14);
         assert_eq!(found.angle_field.values().len(), 6);
+    }
+
+    #[test]
+    fn folded_and_mirrored_copies_are_inverted() {
+        let is_inverted = |place: fn(DVec3) -> DVec3| {
+            let (mesh, component) = copy(place);
+            let found = distortion(&mesh, &component, true, &Unmonitored).unwrap();
+            found.inverted[0]
+        };
+        // Turned, sheared until the top stands beside the bottom, tapered.
+        assert!(!is_inverted(|p| DVec3::new(-p.y, p.x, p.z)));
+        assert!(!is_inverted(|p| DVec3::new(p.x + 9.0 * p.z, p.y, p.z)));
+        assert!(!is_inverted(|p| DVec3::new(p.x * (1.0 - p.z), p.y, p.z)));
+        // Mirrored, put below the surface, and with a top narrower than nothing.
+        assert!(is_inverted(|p| DVec3::new(p.y, p.x, p.z)));
+        assert!(is_inverted(|p| DVec3::new(p.x, p.y, -p.z)));
+        assert!(is_inverted(|p| DVec3::new(
+            p.x * (1.0 - 3.0 * p.z),
+            p.y,
+            p.z
+        )));
     }
 
     #[test]

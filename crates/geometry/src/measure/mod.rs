@@ -2,6 +2,7 @@
 //! planarity, distortion, and schedules of panels.
 
 mod distortion;
+mod inversion;
 mod mesh;
 mod panels;
 mod planarity;
