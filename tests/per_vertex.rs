@@ -1,6 +1,9 @@
 //! Components whose every vertex keeps its own height (§5), on the folds of the
 //! add-on's cases.
 
+use tessgraph_geometry::Unmonitored;
+use tessgraph_geometry::surface::Surface;
+
 use crate::support::{self, Ran, workspace};
 
 /// The array of a case's component over its base, compensated.
@@ -12,6 +15,8 @@ fn compensated(case: &str, directions: &str) -> Ran {
             \"part\": ReadMesh(path: \"component.obj\"),
             \"array\": ArrayComponents(base: \"base\", component: \"part\", fit: Unit,
                 directions: \"directions\", compensate: PerVertex),
+            \"check\": CheckIntersections(mesh: \"array\"),
+            \"shape\": MeasureDistortion(mesh: \"array\", component: \"part\"),
         }}, outputs: {{\"out.obj\": \"array\"}})"
     );
     let folder = workspace().join("tests/peer/cases").join(case);
@@ -40,6 +45,17 @@ fn folds_with_targets_keep_every_height() {
             "{case}: {:?}",
             ran.warnings()
         );
+        for result in ["check.pairs", "check.component_pairs", "shape.inverted"] {
+            assert_eq!(ran.count(result), 0, "{case}: {result}");
+        }
+        assert!(ran.warnings().is_empty(), "{case}: {:?}", ran.warnings());
+        // By a second search from scratch, by the same border rule.
+        let base = Surface::new(&ran.mesh("base"), &Unmonitored).expect("faces");
+        for sign in [1.0, -1.0] {
+            let errors = support::height_errors(&ran.mesh("array"), &base, &ran.mesh("part"), sign);
+            println!("{case}: side {sign}: measured {errors:?}");
+            assert!(errors.max <= 2e-4, "{case}: {errors:?}");
+        }
         for side in ["outward", "inward"] {
             let side = |result: &str| of(&ran, &format!("{side}_{result}"));
             let [solved, extended, clipped] = ["solved", "extended", "border_clipped"].map(&side);

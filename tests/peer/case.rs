@@ -4,7 +4,6 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 
 use tessgraph_geometry::{Mesh, Unmonitored, weld_vertices};
-use tessgraph_io::{Format, ReadOptions, no_files};
 
 use super::settings::{self, Request};
 use super::{compare, even, patch};
@@ -122,19 +121,7 @@ impl Case {
 
     /// A mesh of the case's folder.
     fn read(&self, name: &str) -> Result<Mesh, String> {
-        let text = support::text_of(&self.folder.join(name));
-        let options = ReadOptions::default();
-        let loaded = tessgraph_io::read(
-            Format::Obj,
-            name,
-            text.as_bytes(),
-            &mut no_files,
-            &options,
-            &Unmonitored,
-        );
-        loaded
-            .map(|loaded| loaded.mesh)
-            .map_err(|error| error.to_string())
+        support::read_obj(&self.folder.join(name))
     }
 }
 

@@ -1,12 +1,10 @@
 //! Even thickness: the add-on's is to be beaten, not reproduced.
 
-use tessgraph_geometry::compensate::Errors;
-use tessgraph_geometry::measure::{ThicknessOptions, measure_thickness};
 use tessgraph_geometry::surface::Surface;
 use tessgraph_geometry::{Mesh, Unmonitored};
 
 use super::case::Verdict;
-use crate::support::Ran;
+use crate::support::{Ran, height_errors};
 
 /// Beaten if every vertex of ours has a solution and both sides keep their
 /// thickness better, measured with borders continued.
@@ -24,7 +22,8 @@ pub(super) fn judge(ran: &Ran, theirs: &Mesh) -> Verdict {
     let mut said = Vec::new();
     let mut better = true;
     for (name, sign) in [("top", 1.0), ("bottom", -1.0)] {
-        let [here, there] = [&ours, theirs].map(|mesh| errors(mesh, &base, &component, sign));
+        let [here, there] =
+            [&ours, theirs].map(|mesh| height_errors(mesh, &base, &component, sign));
         better &= here.max <= there.max && here.rms <= there.rms;
         said.push(format!(
             "{name} {:.4} % rms and {:.4} % at most, theirs {:.4} % and {:.4} %",
@@ -39,15 +38,4 @@ pub(super) fn judge(ran: &Ran, theirs: &Mesh) -> Verdict {
     } else {
         Verdict::Differs(said.join("; "))
     }
-}
-
-/// Errors of the vertices on one side, each against its height in the component.
-fn errors(mesh: &Mesh, base: &Surface, component: &Mesh, sign: f64) -> Errors {
-    let options = ThicknessOptions::default();
-    let measured = measure_thickness(mesh, base, &options, &Unmonitored).expect("a mesh");
-    // Both arrays hold the component's vertices in order, face by face.
-    let heights = component.positions().iter().map(|p| p.z * sign).cycle();
-    let distances = measured.field.values().iter();
-    let side = distances.zip(heights).filter(|(_, height)| *height > 0.0);
-    Errors::of(side.map(|(distance, height)| (distance / height - 1.0).abs()))
 }

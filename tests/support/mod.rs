@@ -5,11 +5,15 @@ pub(crate) mod program;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use tessgraph_geometry::Mesh;
+use tessgraph_geometry::compensate::Errors;
+use tessgraph_geometry::measure::{ThicknessOptions, measure_thickness};
+use tessgraph_geometry::surface::Surface;
+use tessgraph_geometry::{Mesh, Unmonitored};
 use tessgraph_graph::check::LoadOptions;
 use tessgraph_graph::plan::ResultRef;
 use tessgraph_graph::world::{DiskWorld, MemoryWorld, World};
 use tessgraph_graph::{Diagnostic, Engine, Evaluation, Plan, Silent, Value};
+use tessgraph_io::{Format, ReadOptions, no_files};
 use tessgraph_nodes::NODES;
 
 /// The folder of the workspace.
@@ -18,6 +22,24 @@ pub(crate) fn workspace() -> PathBuf {
         .parent()
         .expect("tests stand in the workspace")
         .into()
+}
+
+/// An OBJ file as a mesh.
+pub(crate) fn read_obj(path: &Path) -> Result<Mesh, String> {
+    #[allow(clippy::disallowed_methods, reason = "tests read their own files")]
+    let bytes = std::fs::read(path).map_err(|error| format!("{}: {error}", path.display()))?;
+    let name = path.file_name().map(|name| name.to_string_lossy());
+    let loaded = tessgraph_io::read(
+        Format::Obj,
+        &name.unwrap_or_default(),
+        &bytes,
+        &mut no_files,
+        &ReadOptions::default(),
+        &Unmonitored,
+    );
+    loaded
+        .map(|loaded| loaded.mesh)
+        .map_err(|error| error.to_string())
 }
 
 /// A file of the workspace as text.
@@ -29,6 +51,16 @@ pub(crate) fn text_of(path: &Path) -> String {
 /// Loads a graph, or shows what is wrong with it.
 pub(crate) fn load(name: &str, text: &str) -> Plan {
     try_load(name, text).unwrap_or_else(|diagnostics| panic!("{}", shown(&diagnostics)))
+}
+
+/// The same with parameters set, as `--set name=value` does.
+pub(crate) fn load_with(name: &str, text: &str, set: &[(&str, &str)]) -> Plan {
+    let own = |&(name, value): &(&str, &str)| (name.to_owned(), value.to_owned());
+    let options = LoadOptions {
+        set: set.iter().map(own).collect(),
+    };
+    tessgraph_graph::load(name, text.as_bytes(), NODES, &options)
+        .unwrap_or_else(|diagnostics| panic!("{}", shown(&diagnostics)))
 }
 
 pub(crate) fn try_load(name: &str, text: &str) -> Result<Plan, Vec<Diagnostic>> {
@@ -176,6 +208,18 @@ pub(crate) fn everything(plan: &Plan) -> Vec<ResultRef> {
         (0..planned.spec.outputs.len()).map(move |result| ResultRef { node, result })
     };
     plan.nodes.iter().enumerate().flat_map(results).collect()
+}
+
+/// Errors of an array's vertices on one side of its base, each against its
+/// height in the component, borders continued.
+pub(crate) fn height_errors(mesh: &Mesh, base: &Surface, component: &Mesh, sign: f64) -> Errors {
+    let options = ThicknessOptions::default();
+    let measured = measure_thickness(mesh, base, &options, &Unmonitored).expect("a mesh");
+    // An array holds the component's vertices in order, face by face.
+    let heights = component.positions().iter().map(|p| p.z * sign).cycle();
+    let distances = measured.field.values().iter();
+    let side = distances.zip(heights).filter(|(_, height)| *height > 0.0);
+    Errors::of(side.map(|(distance, height)| (distance / height - 1.0).abs()))
 }
 
 /// The files under a folder of the workspace.
