@@ -12,7 +12,10 @@ struct Roof {
     offset: f64,
 }
 
-#[allow(clippy::print_stdout, reason = "what was skipped, and the price, are for people")]
+#[allow(
+    clippy::print_stdout,
+    reason = "what was skipped, and the price, are for people"
+)]
 impl Roof {
     /// The roof `name` offset by `edges` mean edges; `None`, said aloud, without
     /// the corpus.

@@ -8,6 +8,7 @@
 mod case;
 mod compare;
 mod even;
+mod folders;
 mod patch;
 mod settings;
 

@@ -1,0 +1,167 @@
+//! Every property of the add-on is understood or refused by its name.
+
+use std::collections::BTreeSet;
+
+use super::{Request, graph};
+use crate::support::{self, workspace};
+
+/// Settings that have a counterpart: a graph is made of them.
+const UNDERSTOOD: &[&str] = &[
+    r#""fill_mode": "TRI", "rotation_shift": 1"#,
+    r#""fill_mode": "FAN", "rotation_shift": 3, "scale_mode": "ADAPTIVE""#,
+    r#""fill_mode": "FRAME", "frame_mode": "CENTER", "frame_thickness": 0.3, "fill_frame": true,
+       "fill_frame_mat": 1, "preserve_quads": true"#,
+    r#""fill_mode": "FRAME", "frame_boundary": true, "frame_boundary_thickness": 0.1"#,
+    r#""fill_mode": "FRAME", "vertex_group_frame_thickness": "W", "face_weight_frame": false,
+       "invert_vertex_group_frame_thickness": true, "vertex_group_frame_thickness_factor": 0.3"#,
+    r#""rotation_mode": "UV""#,
+    r#""rotation_mode": "WEIGHT", "vertex_group_rotation": "W", "rotation_direction": "DIAG",
+       "invert_vertex_group_rotation": true"#,
+    r#""use_origin_offset": false, "offset": 0.5, "zscale": 2.0"#,
+    r#""use_origin_offset": false, "scale_mode": "CONSTANT""#,
+    r#""smooth_normals": true, "smooth_normals_iter": 3, "smooth_normals_uv": -1.0"#,
+    r#""smooth_normals": true, "vertex_group_smooth_normals": "W",
+       "invert_vertex_group_smooth_normals": true"#,
+    r#""normals_x": 1.0, "normals_y": 1.0, "normals_z": 0.0"#,
+    r#""normals_mode": "CUSTOM", "smooth_normals": true"#,
+    r#""normals_mode": "OBJECT", "even_thickness": true, "even_thickness_iter": 4,
+       "scale_mode": "CONSTANT", "target": "T""#,
+    r#""vertex_group_thickness": "W", "invert_vertex_group_thickness": true,
+       "vertex_group_thickness_factor": 0.1"#,
+    r#""merge": true, "merge_thres": 0.01, "merge_open_edges_only": true, "close_mesh": "CAP",
+       "cap_material_offset": 1"#,
+    r#""merge": true, "close_mesh": "BRIDGE_CAP", "bridge_material_offset": 1"#,
+    r#""merge": false, "close_mesh": "BRIDGE""#,
+    r#""mode": "GLOBAL", "bounds_x": "CYCLIC", "bounds_y": "CLIP""#,
+    r#""component_mode": "OBJECT", "component": "C", "generator": "G", "iterations": 1"#,
+    r#""bool_smooth": true, "bool_vertex_group": true, "bool_materials": false, "bool_hold": true,
+       "bool_random": true, "bool_combine": true, "bool_advanced": true, "cap_faces": true,
+       "bridge_cuts": 3, "bridge_smoothness": 0.5, "open_edges_crease": 1.0,
+       "bridge_edges_crease": 1.0, "bridge_material_offset": 2, "boundary_mat_offset": 1,
+       "boundary_variable_offset": true, "consistent_wedges": false, "gen_modifiers": false,
+       "com_modifiers": false, "error_message": "e", "warning_message": "w",
+       "warning_message_merge": "w", "warning_message_thickness": "w", "patch_subs": 2,
+       "combine_mode": "ALL", "rand_seed": 3, "rand_step": 2, "coll_rand_seed": 4,
+       "component_coll": "K", "vertex_group_distribution": "W", "material_id": 2,
+       "vertex_group_distribution_factor": 0.5, "invert_vertex_group_distribution": true,
+       "vertex_group_cap_owner": "BASE", "vertex_group_bridge_owner": "BASE""#,
+];
+
+/// Settings without a counterpart, or whose data a case's folder does not hold,
+/// and the keys that must be named.
+const REFUSED: &[(&str, &[&str])] = &[
+    // Shape keys and collections by name are left to the add-on.
+    (r#""normals_mode": "SHAPEKEYS""#, &["normals_mode"]),
+    (r#""bool_shapekeys": true"#, &["bool_shapekeys"]),
+    (
+        r#""component_mode": "COLLECTION", "component_coll": "K", "coll_rand_seed": 1"#,
+        &["component_mode", "component_coll", "coll_rand_seed"],
+    ),
+    // numpy's random numbers.
+    (
+        r#""rotation_mode": "RANDOM", "rand_seed": 1, "rand_step": 2"#,
+        &["rotation_mode", "rand_seed", "rand_step"],
+    ),
+    // Components named as materials, and selections, are in the scene only.
+    (r#""component_mode": "MATERIALS""#, &["component_mode"]),
+    (r#""bool_selection": true"#, &["bool_selection"]),
+    (
+        r#""bool_material_id": true, "material_id": 1"#,
+        &["bool_material_id", "material_id"],
+    ),
+    // A face's own normal for all its corners would tear the surface apart.
+    (r#""normals_mode": "FACES""#, &["normals_mode"]),
+    // Triangles as quads have four senses, a triangle three.
+    (
+        r#""fill_mode": "FAN", "rotation_mode": "WEIGHT", "vertex_group_rotation": "W""#,
+        &["rotation_mode", "vertex_group_rotation"],
+    ),
+    // Bending of whole normal fields by a group, and what edits seams or loops.
+    (
+        r#""vertex_group_scale_normals": "W", "invert_vertex_group_scale_normals": true"#,
+        &[
+            "vertex_group_scale_normals",
+            "invert_vertex_group_scale_normals",
+        ],
+    ),
+    (r#""bool_dissolve_seams": true"#, &["bool_dissolve_seams"]),
+    // Groups of the component, of which a folder holds nothing.
+    (
+        r#""merge": true, "close_mesh": "BRIDGE", "vertex_group_bridge": "W",
+           "invert_vertex_group_bridge": true"#,
+        &["vertex_group_bridge", "invert_vertex_group_bridge"],
+    ),
+    (
+        r#""vertex_group_cap": "W", "invert_vertex_group_cap": true"#,
+        &["vertex_group_cap", "invert_vertex_group_cap"],
+    ),
+    (r#""auto_rotate_boundary": true"#, &["auto_rotate_boundary"]),
+    (
+        r#""iterations": 2, "patch_subs": 1, "combine_mode": "ALL""#,
+        &["iterations", "patch_subs", "combine_mode"],
+    ),
+    // Vectors to a target that are smoothed at their own lengths.
+    (
+        r#""normals_mode": "OBJECT", "smooth_normals": true"#,
+        &["smooth_normals"],
+    ),
+    (
+        r#""a_key_of_a_later_version": 1"#,
+        &["a_key_of_a_later_version"],
+    ),
+];
+
+fn request(settings: &str) -> Request {
+    graph(&format!("{{\"settings\": {{{settings}}}}}"), true)
+}
+
+#[test]
+fn what_has_a_counterpart_becomes_a_graph() {
+    for settings in UNDERSTOOD {
+        match request(settings) {
+            Request::Refused(keys) => panic!("{settings}: refused {keys:?}"),
+            Request::Graph { text, .. } => {
+                let plan = support::try_load("case.ron", &text);
+                let found = plan.err().map(|found| support::shown(&found));
+                assert_eq!(found, None, "{settings}\n{text}");
+            }
+        }
+    }
+}
+
+#[test]
+fn what_has_none_is_refused_by_name() {
+    for (settings, expected) in REFUSED {
+        match request(settings) {
+            Request::Refused(keys) => {
+                let keys: BTreeSet<&str> = keys.iter().map(String::as_str).collect();
+                assert_eq!(keys, expected.iter().copied().collect(), "{settings}");
+            }
+            Request::Graph { text, .. } => panic!("{settings}: {text}"),
+        }
+    }
+}
+
+#[test]
+fn every_property_of_the_add_on_is_looked_at() {
+    let list = workspace().join("../shared/peer/tissue/features.md");
+    if !list.is_file() {
+        println!("skipped: {} is not here", list.display());
+        return;
+    }
+    let text = support::text_of(&list);
+    let rows = text.lines().filter_map(|line| line.strip_prefix("| `"));
+    // The name of a UV layer, which cases name apart, is no property.
+    let names = rows.filter_map(|row| row.split('`').next());
+    let names: BTreeSet<&str> = names.filter(|name| *name != "Eval_Normals").collect();
+    assert!(names.len() > 90, "{}", names.len());
+    let settings = UNDERSTOOD
+        .iter()
+        .chain(REFUSED.iter().map(|(settings, _)| settings));
+    let settings: String = settings.copied().collect();
+    let missing: Vec<_> = names
+        .into_iter()
+        .filter(|name| !settings.contains(&format!("\"{name}\"")))
+        .collect();
+    assert!(missing.is_empty(), "{missing:?}");
+}
