@@ -1,5 +1,6 @@
 //! Tests of the whole program, in one binary.
 
+mod bad_geometry;
 mod cache;
 mod cli;
 mod closed_forms;
