@@ -8,8 +8,7 @@ use super::{Watch, write};
 fn heavy(iterations: usize) -> String {
     format!(
         r#"Graph(version: 1, nodes: {{
-        "flat": Grid(cells: [999, 999]),
-        "roof": DisplaceVertices(mesh: "flat", by: "sin(x * 7) + cos(y * 5)"),
+        "roof": ParametricSurface(x: "20 * u", y: "20 * v", z: "sin(9 * u) + cos(7 * v)", cells: [999, 999]),
         "normals": SmoothNormals(mesh: "roof", iterations: {iterations}),
         "shell": OffsetMesh(mesh: "roof", directions: "normals", outward: 0.1),
     }}, outputs: {{"size.stl": "shell"}})"#
@@ -27,7 +26,7 @@ fn an_edit_stops_a_node_of_a_million_vertices_at_once() {
     let mut times = Vec::new();
     for edit in 1..=10 {
         let saved = Instant::now();
-        write(&path, &heavy(100_000 + edit));
+        write(&path, &heavy(100_000 - edit));
         watch.line_with("changed, stopped after");
         times.push(saved.elapsed());
         std::thread::sleep(Duration::from_millis(900));
@@ -37,6 +36,6 @@ fn an_edit_stops_a_node_of_a_million_vertices_at_once() {
     // The aim is 50 ms; a busy machine may give this process no time meanwhile.
     assert!(times[5] < Duration::from_millis(250), "{times:?}");
     write(&path, &heavy(1));
-    let done = watch.line_with("4 nodes");
-    assert!(done.contains("2 computed, 2 cached"), "{done}");
+    let done = watch.line_with("3 nodes");
+    assert!(done.contains("2 computed, 1 cached"), "{done}");
 }
