@@ -61,6 +61,21 @@ fn no_input_ends_it() {
 
 #[cfg(unix)]
 #[test]
+fn too_large_a_result_ends_only_its_run() {
+    let (_folder, mut watch) = Watch::on_grid(2, &["--max-memory", "80MB"]);
+    for faces in 3..5 {
+        write(&watch.path("g.ron"), &graph(5_000_000));
+        assert_eq!(watch.next()["ok"], false);
+        watch.line_with("out_of_memory");
+        assert_eq!(watch.faces(), faces - 1, "the last good output stays");
+        write(&watch.path("g.ron"), &graph(faces));
+        watch.until_faces(faces);
+    }
+    assert_eq!(watch.interrupt().code(), Some(130));
+}
+
+#[cfg(unix)]
+#[test]
 fn a_signal_ends_it_and_leaves_nothing_behind() {
     let folder = tempfile::tempdir().expect("a folder");
     write(&folder.path().join("g.ron"), &graph(2));

@@ -49,6 +49,12 @@ pub(crate) fn is_requested() -> bool {
 
 /// Removes temporary files and ends the process.
 pub(crate) fn leave(status: u8) -> ! {
+    remove_temporaries();
+    std::process::exit(status.into());
+}
+
+/// Removes temporary files, and lets nobody begin another one.
+pub(crate) fn remove_temporaries() {
     // The lock is held for moments only, except by a thread that ran out of
     // memory inside it and now comes here: hence no endless wait. It is never
     // released again, so that nobody begins another temporary file.
@@ -57,11 +63,11 @@ pub(crate) fn leave(status: u8) -> ! {
             for path in temporaries.iter() {
                 let _ = std::fs::remove_file(path);
             }
-            std::process::exit(status.into());
+            std::mem::forget(temporaries);
+            return;
         }
         std::thread::sleep(Duration::from_millis(1));
     }
-    std::process::exit(status.into());
 }
 
 /// A path that is removed on interruption until this guard is gone.

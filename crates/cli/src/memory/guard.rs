@@ -9,6 +9,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use super::meter;
 use crate::commands::FAILED;
 use crate::interrupt;
+use crate::watch::begin_anew;
 
 /// Only pieces of this size or more are counted: a mesh's buffers, not names.
 pub(super) const LARGE: usize = 64 << 10;
@@ -23,7 +24,8 @@ static LIVE: AtomicUsize = AtomicUsize::new(0);
 ///
 /// What would pass the limit, or what the system refuses, ends the process in
 /// order: a message with the number of bytes and the nodes at work, temporary
-/// files removed, exit status 1. Without it the process would be aborted, or
+/// files removed, exit status 1; a program that watches a graph begins anew
+/// instead. Without it the process would be aborted, or
 /// killed after it had slowed the machine down.
 #[derive(Debug)]
 pub struct MemoryGuard;
@@ -133,5 +135,7 @@ fn refuse(more: usize, live: usize, limit: Option<usize>) -> ! {
         " = help: make a smaller result, with fewer levels or cells, or raise `--max-memory`"
     );
     drop(err);
+    interrupt::remove_temporaries();
+    begin_anew();
     interrupt::leave(FAILED)
 }

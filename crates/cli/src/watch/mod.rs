@@ -12,6 +12,7 @@ mod dependencies;
 mod mailbox;
 mod notices;
 mod places;
+mod resume;
 mod stamps;
 mod status;
 
@@ -23,7 +24,9 @@ use std::sync::atomic::Ordering;
 use std::thread::Scope;
 use std::time::Instant;
 
-use crate::commands::run::{Control, Ran, ReportFormat, RunArgs, Session, closing, details};
+use crate::commands::run::{
+    Control, Ran, ReportFormat, RunArgs, Session, Stopped, closing, details,
+};
 use crate::commands::{Context, OK, USAGE};
 use crate::interrupt::{self, INTERRUPTED};
 use crate::text::{count, printable};
@@ -31,6 +34,7 @@ use debounce::Debounce;
 use places::Places;
 
 pub(crate) use mailbox::{Mailbox, Message, Post};
+pub(crate) use resume::begin_anew;
 
 /// Runs the graph now and after every change, until the mailbox says to stop.
 pub(crate) fn watch(
@@ -49,11 +53,19 @@ pub(crate) fn watch(
         touched: BTreeSet::new(),
         unlooked: BTreeSet::new(),
         running: None,
-        again: true,
+        again: !args.resume,
         cause: args.graph.clone(),
-        is_first: true,
+        is_first: !args.resume,
         warned: false,
     };
+    resume::arm();
+    if args.resume {
+        watcher.tell("waiting for a change of the graph\n", cx);
+        if args.report == ReportFormat::Json {
+            // The report of the run that could not end by itself.
+            closing(args, &Ran::never(Stopped::Graph(Vec::new())), cx);
+        }
+    }
     std::thread::scope(|scope| watcher.go(scope, mailbox, cx))
 }
 
