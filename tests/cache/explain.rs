@@ -43,7 +43,7 @@ fn changes_are_followed_down_to_the_edited_input() {
     assert_eq!(first.len(), 6);
     assert_eq!(
         first[0],
-        "cage.kind: not in the last run -> ReadMesh version 1"
+        "cage.kind: not in the last run -> ReadMesh version 2"
     );
     assert_eq!(explained(GRAPH, folder.path(), CAGE), [""; 0]);
     let thicker = GRAPH.replace("\"t\": 0.1", "\"t\": 0.25");

@@ -64,6 +64,10 @@ impl Node for MeasureMesh {
 
     fn eval(self, _: &EvalCx<'_>) -> Result<Self::Output, NodeError> {
         let found = measure::measure_mesh(&self.mesh);
+        if !found.is_finite() {
+            let message = "the coordinates are so large that the area or volume overflows";
+            return Err(NodeError::new(message).with_help("scale the mesh down with Transform"));
+        }
         let size = found
             .bounds
             .map_or(glam::DVec3::ZERO, |(low, high)| high - low);

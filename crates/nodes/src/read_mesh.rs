@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use glam::{DAffine3, DMat3, DVec3};
+use tessgraph_geometry::measure::find_defects;
 use tessgraph_geometry::{Mesh, transform};
 use tessgraph_graph::units::Units;
 use tessgraph_graph::value::FilePath;
@@ -67,6 +68,7 @@ pub(crate) enum Up {
 
 impl Node for ReadMesh {
     type Output = Arc<Mesh>;
+    const VERSION: u32 = 2;
 
     fn eval(self, cx: &EvalCx<'_>) -> Result<Self::Output, NodeError> {
         let name = self.path.as_str();
@@ -87,6 +89,9 @@ impl Node for ReadMesh {
             .map_err(failure)?;
         for warning in &loaded.warnings {
             cx.warn(format!("{name}: {warning}"));
+        }
+        for defect in find_defects(&loaded.mesh).sentences(loaded.mesh.topology()) {
+            cx.warn(format!("{name}: {defect}"));
         }
         let units = self.units.map_or(cx.units(), Units::from);
         if format.is_metric() {

@@ -6,15 +6,14 @@ use std::sync::Arc;
 
 use clap::Args;
 use serde_json::{Value as Json, json};
-use tessgraph_geometry::Monitor;
 use tessgraph_geometry::measure::{MeshMeasures, measure_mesh};
-use tessgraph_graph::world::{DiskWorld, World as _};
+use tessgraph_geometry::{Monitor, Topology};
+use tessgraph_graph::world::{DiskWorld, World as _, read_plain};
 use tessgraph_graph::{Diagnostic, Label, Severity, Source, six_digits};
 use tessgraph_io::{Format, IoError, Loaded, Place, ReadOptions, ResolveError};
 
 use super::{Context, FAILED, OK, USAGE};
 use crate::diagnostics::{print, without_place};
-use crate::graph_file::read_plain;
 use crate::interrupt::{self, INTERRUPTED};
 use crate::json::{number, pretty};
 use crate::memory::{default_limit, set_limit};
@@ -62,10 +61,17 @@ pub(crate) fn info(args: &InfoArgs, cx: &mut Context<'_, '_>) -> u8 {
         .collect();
     print(cx.console, &warnings);
     let measures = measure_mesh(&loaded.mesh);
+    if !measures.is_finite() {
+        let message = "its coordinates are so large that its area or volume overflows";
+        let diagnostic = without_place("too_large", &name, message);
+        let help = "scale the mesh down in the program that made it";
+        print(cx.console, &[diagnostic.with_help(help)]);
+        return FAILED;
+    }
     let text = if args.json {
         pretty(&measures_json(&measures))
     } else {
-        page(&measures, format)
+        page(&measures, loaded.mesh.topology(), format)
     };
     cx.console.data(&text);
     OK
@@ -76,7 +82,10 @@ fn load(path: &Path, format: Format) -> Result<Loaded, Option<Box<Diagnostic>>> 
     let shown = path.to_string_lossy();
     let unreadable = |reason: String| {
         let message = format!("cannot read the mesh: {reason}");
-        Some(Box::new(without_place("unreadable", &shown, message)))
+        let diagnostic = without_place("unreadable", &shown, message);
+        Some(Box::new(
+            diagnostic.with_help("name a mesh file that you may read"),
+        ))
     };
     let limit = default_limit();
     set_limit(limit);
@@ -181,7 +190,7 @@ fn measures_json(measures: &MeshMeasures) -> Json {
 }
 
 /// The figures for people, with what they mean.
-fn page(measures: &MeshMeasures, format: Format) -> String {
+fn page(measures: &MeshMeasures, topology: &Topology, format: Format) -> String {
     let unit = if format.is_metric() { " m" } else { "" };
     let row = |name: &str, value: String| vec![name.to_owned(), value];
     let mut rows = vec![
@@ -221,14 +230,14 @@ fn page(measures: &MeshMeasures, format: Format) -> String {
     }
     let mut text = table(&rows, &[Align::Left, Align::Left]);
     text.push('\n');
-    for line in verdicts(measures) {
+    for line in verdicts(measures, topology) {
         let _ = writeln!(text, "{line}");
     }
     text
 }
 
 /// What the figures say about the mesh's soundness, the main thing first.
-fn verdicts(measures: &MeshMeasures) -> Vec<String> {
+fn verdicts(measures: &MeshMeasures, topology: &Topology) -> Vec<String> {
     let mut lines = Vec::new();
     if measures.faces == 0 {
         lines.push("no faces: a point cloud or an empty mesh".to_owned());
@@ -246,38 +255,7 @@ fn verdicts(measures: &MeshMeasures) -> Vec<String> {
         };
         lines.push(format!("closed{sense}"));
     }
-    let problems = [
-        (
-            measures.nonmanifold_edges,
-            "edge",
-            "with more than two faces: not a manifold",
-        ),
-        (
-            measures.nonmanifold_vertices,
-            "vertex",
-            "where separate faces touch: not a manifold",
-        ),
-        (
-            measures.inconsistent_edges,
-            "edge",
-            "between faces of opposite sense: some are flipped",
-        ),
-        (measures.degenerate_faces, "face", "without area"),
-        (
-            measures.duplicate_faces,
-            "face",
-            "with the corners of another",
-        ),
-        (measures.isolated_vertices, "vertex", "of no face"),
-    ];
-    for (number, noun, what) in problems {
-        match (number, noun) {
-            (0, _) => {}
-            (1, _) => lines.push(format!("1 {noun} {what}")),
-            (_, "vertex") => lines.push(format!("{number} vertices {what}")),
-            _ => lines.push(format!("{number} {noun}s {what}")),
-        }
-    }
+    lines.extend(measures.defects.sentences(topology));
     lines
 }
 

@@ -234,7 +234,7 @@ fn one_of_a_kind_is_said_so() {
         .into_owned();
     let given = desk.program(&["info", &path]);
     assert!(
-        given.out.contains("1 face with the corners of another"),
+        given.out.contains("1 face repeats another: 1"),
         "{}",
         given.out
     );

@@ -2,11 +2,8 @@
 
 use glam::DVec3;
 
-use crate::normals::newell;
-use crate::{Adjacency, Mesh, Topology, parallel};
-
-/// Faces whose area is below this share of the squared extent are degenerate.
-const DEGENERATE_AREA: f64 = 1e-12;
+use super::defects::{Defects, Found, find_defects};
+use crate::{Mesh, Topology, parallel};
 
 /// What there is to say about a mesh in numbers; see [`measure_mesh`].
 #[derive(Debug, Clone, PartialEq)]
@@ -42,6 +39,8 @@ pub struct MeshMeasures {
     pub degenerate_faces: usize,
     /// Faces with the same vertices as an earlier one, in any order.
     pub duplicate_faces: usize,
+    /// The elements behind the six counts above.
+    pub defects: Defects,
     /// Smallest and largest coordinates in metres; `None` without vertices.
     pub bounds: Option<(DVec3, DVec3)>,
     /// Area of the triangles of [`Mesh::triangles`] in m².
@@ -50,6 +49,17 @@ pub struct MeshMeasures {
     /// mesh without faces and where a boundary, a non-manifold or an
     /// inconsistent edge leaves inside and outside undefined.
     pub volume: Option<f64>,
+}
+
+impl MeshMeasures {
+    /// Whether extent, area and volume are finite: with coordinates beyond about
+    /// 1e100 m they overflow.
+    pub fn is_finite(&self) -> bool {
+        let extent = self
+            .bounds
+            .is_none_or(|(low, high)| (high - low).is_finite());
+        extent && self.area.is_finite() && self.volume.is_none_or(f64::is_finite)
+    }
 }
 
 /// Measures a mesh of any quality. Cost: O(corners · log valence).
@@ -67,14 +77,19 @@ pub struct MeshMeasures {
 pub fn measure_mesh(mesh: &Mesh) -> MeshMeasures {
     let topology = mesh.topology();
     let adjacency = topology.adjacency();
-    let edges = EdgeCounts::of(topology, adjacency);
-    let isolated_vertices = count(mesh.vertex_count(), |vertex| {
-        adjacency.vertex_corners(vertex).is_empty()
+    let defects = find_defects(mesh);
+    let boundary = Found::among(adjacency.edge_count(), |edge| {
+        adjacency.is_boundary_edge(edge)
     });
-    let used = mesh.vertex_count() - isolated_vertices;
+    let used = mesh.vertex_count() - defects.isolated_vertices.count;
     let bounds = mesh.bounds();
     let (area, volume) = area_and_volume(mesh, bounds);
-    let closed = edges.boundary + edges.nonmanifold + edges.inconsistent == 0;
+    let unclear = [
+        &boundary,
+        &defects.nonmanifold_edges,
+        &defects.inconsistent_edges,
+    ];
+    let closed = unclear.iter().all(|edges| edges.count == 0);
     MeshMeasures {
         vertices: mesh.vertex_count(),
         edges: adjacency.edge_count(),
@@ -82,48 +97,18 @@ pub fn measure_mesh(mesh: &Mesh) -> MeshMeasures {
         triangles: mesh.corner_count() - 2 * mesh.face_count(),
         euler: used as i64 - adjacency.edge_count() as i64 + mesh.face_count() as i64,
         components: components(topology),
-        boundary_edges: edges.boundary,
+        boundary_edges: boundary.count,
         boundary_loops: boundary_pieces(topology),
-        nonmanifold_edges: edges.nonmanifold,
-        nonmanifold_vertices: count(mesh.vertex_count(), |v| topology.fan_count(v) > 1),
-        inconsistent_edges: edges.inconsistent,
-        isolated_vertices,
-        degenerate_faces: degenerate_faces(mesh, bounds),
-        duplicate_faces: duplicate_faces(topology),
+        nonmanifold_edges: defects.nonmanifold_edges.count,
+        nonmanifold_vertices: defects.nonmanifold_vertices.count,
+        inconsistent_edges: defects.inconsistent_edges.count,
+        isolated_vertices: defects.isolated_vertices.count,
+        degenerate_faces: defects.degenerate_faces.count,
+        duplicate_faces: defects.duplicate_faces.count,
+        defects,
         bounds,
         area,
         volume: (closed && mesh.face_count() > 0).then_some(volume),
-    }
-}
-
-/// How many of the first `total` indices satisfy `holds`.
-fn count(total: usize, holds: impl Fn(usize) -> bool + Sync) -> usize {
-    let step = |sum, index| sum + usize::from(holds(index));
-    parallel::reduce(total, || 0, step, |a, b| a + b)
-}
-
-struct EdgeCounts {
-    boundary: usize,
-    nonmanifold: usize,
-    inconsistent: usize,
-}
-
-impl EdgeCounts {
-    fn of(topology: &Topology, adjacency: &Adjacency) -> Self {
-        let corners = topology.corners();
-        let with = |holds: &(dyn Fn(&[u32]) -> bool + Sync)| {
-            count(adjacency.edge_count(), |edge| {
-                holds(adjacency.edge_corners(edge))
-            })
-        };
-        Self {
-            boundary: with(&|sides| sides.len() == 1),
-            nonmanifold: with(&|sides| sides.len() > 2),
-            inconsistent: with(&|sides| match *sides {
-                [a, b] => corners[a as usize] == corners[b as usize],
-                _ => false,
-            }),
-        }
     }
 }
 
@@ -214,76 +199,6 @@ fn area_and_volume(mesh: &Mesh, bounds: Option<(DVec3, DVec3)>) -> (f64, f64) {
     (area / 2.0, volume / 6.0)
 }
 
-fn degenerate_faces(mesh: &Mesh, bounds: Option<(DVec3, DVec3)>) -> usize {
-    let extent = bounds.map_or(0.0, |(low, high)| (high - low).max_element());
-    let least = DEGENERATE_AREA * extent * extent;
-    count(mesh.face_count(), |face| {
-        let vertices = mesh.face(face);
-        let places = vertices
-            .iter()
-            .map(|&vertex| mesh.positions()[vertex as usize]);
-        newell(places).length() / 2.0 <= least || repeats(vertices)
-    })
-}
-
-/// Whether a vertex occurs twice. Faces are short, apart from a few.
-fn repeats(vertices: &[u32]) -> bool {
-    const SHORT: usize = 16;
-    if vertices.len() <= SHORT {
-        return (1..vertices.len()).any(|k| vertices[..k].contains(&vertices[k]));
-    }
-    let mut sorted = vertices.to_vec();
-    sorted.sort_unstable();
-    sorted.windows(2).any(|pair| pair[0] == pair[1])
-}
-
-/// Faces beyond the first of each set of vertices.
-///
-/// Equal faces have the same lowest vertex, so each vertex compares only the
-/// faces it is the lowest of.
-fn duplicate_faces(topology: &Topology) -> usize {
-    let adjacency = topology.adjacency();
-    #[derive(Default)]
-    struct Tally {
-        duplicates: usize,
-        faces: Vec<u32>,
-        sorted: Vec<u32>,
-        rows: Vec<(u32, u32)>,
-    }
-    let step = |mut tally: Tally, vertex: usize| {
-        tally.faces.clear();
-        tally.sorted.clear();
-        tally.rows.clear();
-        let corners = adjacency.vertex_corners(vertex).iter();
-        tally
-            .faces
-            .extend(corners.map(|&corner| adjacency.corner_faces()[corner as usize]));
-        tally.faces.dedup();
-        for &face in &tally.faces {
-            let vertices = topology.face(face as usize);
-            if vertices.iter().all(|&other| other as usize >= vertex) {
-                let start = tally.sorted.len();
-                tally.sorted.extend_from_slice(vertices);
-                tally.sorted[start..].sort_unstable();
-                tally.rows.push((start as u32, tally.sorted.len() as u32));
-            }
-        }
-        let row = |&(start, end): &(u32, u32)| &tally.sorted[start as usize..end as usize];
-        tally.rows.sort_unstable_by(|a, b| row(a).cmp(row(b)));
-        tally.duplicates += tally
-            .rows
-            .windows(2)
-            .filter(|pair| row(&pair[0]) == row(&pair[1]))
-            .count();
-        tally
-    };
-    let merge = |a: Tally, b: Tally| Tally {
-        duplicates: a.duplicates + b.duplicates,
-        ..Tally::default()
-    };
-    parallel::reduce(topology.vertex_count(), Tally::default, step, merge).duplicates
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -371,11 +286,5 @@ mod tests {
         let measures = measure_mesh(&mesh(&positions, &[&[0, 1, 2, 3], &[2, 4, 5, 6]]));
         assert_eq!((measures.nonmanifold_vertices, measures.components), (1, 1));
         assert_eq!((measures.boundary_edges, measures.boundary_loops), (8, 1));
-    }
-
-    #[test]
-    fn a_long_face_that_repeats_is_found() {
-        let ring: Vec<u32> = (0..20).chain([3]).collect();
-        assert!(repeats(&ring) && !repeats(&ring[..20]));
     }
 }

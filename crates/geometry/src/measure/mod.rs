@@ -1,6 +1,7 @@
 //! Measures of meshes: counts, area and volume, thickness over a base,
 //! planarity, distortion, and schedules of panels.
 
+mod defects;
 mod distortion;
 mod inversion;
 mod mesh;
@@ -8,6 +9,7 @@ mod panels;
 mod planarity;
 mod thickness;
 
+pub use defects::{Defects, Found, find_defects};
 pub use distortion::{Distortion, distortion};
 pub(crate) use mesh::pieces_of_faces;
 pub use mesh::{MeshMeasures, measure_mesh};
