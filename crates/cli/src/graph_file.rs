@@ -1,14 +1,13 @@
 //! A graph file on disk, read and checked.
 
-use std::fs::File;
-use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 use tessgraph_graph::node::NodeSpec;
-use tessgraph_graph::world::DiskWorld;
+use tessgraph_graph::world::{DiskWorld, read_plain};
 use tessgraph_graph::{Diagnostic, LoadOptions, Plan, load_with};
 
 use crate::diagnostics::without_place;
+use crate::memory;
 use crate::world::{Listener, RecordingWorld, tell};
 
 /// A graph written by people is some kilobytes; more than this is a mistake.
@@ -67,9 +66,10 @@ impl GraphFile {
         let unreadable = |reason: String| {
             let message = format!("cannot read the graph: {reason}");
             let mut diagnostic = without_place("unreadable", &name, message);
-            diagnostic.help = path
-                .is_dir()
-                .then(|| "name the graph file inside it".to_owned());
+            diagnostic.help = Some(match path.is_dir() {
+                true => "name the graph file inside it".to_owned(),
+                false => "name a graph file; `tessgraph new NAME` makes one".to_owned(),
+            });
             vec![diagnostic]
         };
         let read = read_plain(path, LARGEST_GRAPH);
@@ -90,7 +90,10 @@ impl GraphFile {
             _ => PathBuf::from("."),
         };
         let world = match DiskWorld::new(&folder, allowed) {
-            Ok(disk) => RecordingWorld::new(disk).telling(listener, &folder),
+            // What is read stands in memory twice: as bytes, and as what they mean.
+            Ok(disk) => {
+                RecordingWorld::new(disk.limited(memory::limit() / 2)).telling(listener, &folder)
+            }
             Err(error) => return failed(unreadable(error.to_string())),
         };
         let options = LoadOptions { set: set.to_vec() };
@@ -113,71 +116,5 @@ impl GraphFile {
         let path = &self.path;
         let full = path.canonicalize().unwrap_or_else(|_| path.to_owned());
         full.to_string_lossy().into_owned()
-    }
-}
-
-/// The content of a plain file of at most `largest` bytes.
-///
-/// # Errors
-/// In words. Pipes and devices are refused: reading them might never end.
-pub(crate) fn read_plain(path: &Path, largest: u64) -> Result<Vec<u8>, String> {
-    let words = |error: io::Error| match error.kind() {
-        io::ErrorKind::NotFound => "there is no such file".to_owned(),
-        io::ErrorKind::PermissionDenied => "permission denied".to_owned(),
-        _ => error.to_string(),
-    };
-    // Asked before opening: opening a pipe waits for its writer.
-    let found = path.metadata().map_err(words)?;
-    if found.is_dir() {
-        return Err("it is a folder".to_owned());
-    }
-    if !found.is_file() {
-        return Err("it is not a plain file".to_owned());
-    }
-    let too_large = || format!("it is larger than {}", crate::text::bytes_text(largest));
-    if found.len() > largest {
-        return Err(too_large());
-    }
-    let file = File::open(path).map_err(words)?;
-    let mut bytes = Vec::new();
-    // One byte more, so that a file that grows while it is read is noticed.
-    let read = file
-        .take(largest.saturating_add(1))
-        .read_to_end(&mut bytes)
-        .map_err(words)?;
-    if read as u64 > largest {
-        Err(too_large())
-    } else {
-        Ok(bytes)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn only_plain_files_of_some_size_are_read() {
-        let folder = tempfile::tempdir().unwrap();
-        let file = folder.path().join("f");
-        std::fs::write(&file, b"12345").unwrap();
-        assert_eq!(read_plain(&file, 5), Ok(b"12345".to_vec()));
-        assert!(
-            read_plain(&file, 4)
-                .unwrap_err()
-                .contains("larger than 4 B")
-        );
-        assert!(read_plain(folder.path(), 9).unwrap_err().contains("folder"));
-        assert!(
-            read_plain(&folder.path().join("g"), 9)
-                .unwrap_err()
-                .contains("no such file")
-        );
-        #[cfg(unix)]
-        assert!(
-            read_plain(Path::new("/dev/zero"), 9)
-                .unwrap_err()
-                .contains("not a plain file")
-        );
     }
 }

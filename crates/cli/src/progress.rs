@@ -8,7 +8,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use tessgraph_graph::{NodeRun, Observer};
 
 use crate::interrupt;
-use crate::memory::Span;
+use crate::memory::{self, Span};
 
 /// Work that is shorter than this shows no bar: it would only flicker.
 const PATIENCE: Duration = Duration::from_millis(300);
@@ -150,6 +150,10 @@ impl Observer for Progress<'_> {
         }
         drop(names);
         self.bar.inc(1);
+    }
+
+    fn memory_left(&self) -> Option<u64> {
+        memory::left()
     }
 
     fn cancelled(&self) -> bool {

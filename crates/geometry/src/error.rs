@@ -78,6 +78,14 @@ pub enum GeometryError {
         /// How many are possible.
         limit: u128,
     },
+    /// A result that the memory left cannot hold ([`crate::Monitor::afford`]).
+    #[error("it needs about {} MB of memory, and {} MB are left", mega(*.needed), mega((*.left).into()))]
+    OutOfMemory {
+        /// Bytes of the result, about.
+        needed: u128,
+        /// Bytes that may still be taken.
+        left: u64,
+    },
     /// An attribute's length differs from the number of elements of its domain.
     #[error("attribute `{name}` has {actual} values for {expected} {domain} elements")]
     AttributeLength {
@@ -273,6 +281,9 @@ impl GeometryError {
                 "repair the mesh in the program that made it"
             }
             Self::TooMany { .. } => "use fewer levels, cells or faces",
+            Self::OutOfMemory { .. } => {
+                "use fewer levels, cells or faces, or raise the memory limit"
+            }
             Self::NoAttribute { .. } => {
                 "use one of these names, or add the attribute with SetAttribute"
             }
@@ -299,6 +310,11 @@ impl GeometryError {
             _ => return None,
         })
     }
+}
+
+/// Whole megabytes, rounded up.
+fn mega(bytes: u128) -> u128 {
+    bytes.div_ceil(1_000_000)
 }
 
 /// How many element ids a message lists before it only counts the rest.

@@ -15,6 +15,26 @@ pub trait Monitor: Sync {
     /// Told from time to time that `done` of `total` units of work are finished.
     fn progress(&self, _done: u64, _total: u64) {}
 
+    /// Bytes that may still be taken; `None` without a limit.
+    fn memory_left(&self) -> Option<u64> {
+        None
+    }
+
+    /// Asked before an operation allocates a result of about `bytes`, so that
+    /// one that cannot fit costs a message and not the process.
+    ///
+    /// # Errors
+    /// [`GeometryError::OutOfMemory`] when [`Monitor::memory_left`] is less.
+    fn afford(&self, bytes: u128) -> Result<(), GeometryError> {
+        match self.memory_left() {
+            Some(left) if bytes > u128::from(left) => Err(GeometryError::OutOfMemory {
+                needed: bytes,
+                left,
+            }),
+            _ => Ok(()),
+        }
+    }
+
     /// `Err(GeometryError::Cancelled)` if the operation should stop.
     ///
     /// # Errors
@@ -40,5 +60,9 @@ pub(crate) struct Quiet<'a>(pub(crate) &'a dyn Monitor);
 impl Monitor for Quiet<'_> {
     fn cancelled(&self) -> bool {
         self.0.cancelled()
+    }
+
+    fn memory_left(&self) -> Option<u64> {
+        self.0.memory_left()
     }
 }

@@ -30,8 +30,9 @@ pub(crate) struct Cuboid {
 impl Node for Cuboid {
     type Output = Arc<Mesh>;
 
-    fn eval(self, _: &EvalCx<'_>) -> Result<Self::Output, NodeError> {
+    fn eval(self, cx: &EvalCx<'_>) -> Result<Self::Output, NodeError> {
         let cells = self.cells.map(|count| count as usize);
+        cx.monitor().afford(primitives::cuboid_bytes(cells))?;
         Ok(Arc::new(primitives::cuboid(
             DVec3::from(self.size),
             cells,

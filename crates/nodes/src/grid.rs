@@ -32,8 +32,9 @@ pub(crate) struct Grid {
 impl Node for Grid {
     type Output = Arc<Mesh>;
 
-    fn eval(self, _: &EvalCx<'_>) -> Result<Self::Output, NodeError> {
+    fn eval(self, cx: &EvalCx<'_>) -> Result<Self::Output, NodeError> {
         let cells = self.cells.map(|count| count as usize);
+        cx.monitor().afford(primitives::grid_bytes(cells))?;
         Ok(Arc::new(primitives::grid(
             cells,
             DVec2::from(self.size),

@@ -43,6 +43,19 @@ pub(crate) fn set_limit(bytes: u64) {
     );
 }
 
+/// The limit in bytes.
+pub(crate) fn limit() -> u64 {
+    LIMIT.load(Ordering::Relaxed) as u64
+}
+
+/// Bytes that large pieces may still take; `None` before a limit is set.
+pub(crate) fn left() -> Option<u64> {
+    match LIMIT.load(Ordering::Relaxed) {
+        usize::MAX => None,
+        limit => Some(limit.saturating_sub(LIVE.load(Ordering::Relaxed)) as u64),
+    }
+}
+
 /// The part of a piece's size that counts.
 fn counted(size: usize) -> usize {
     if size < LARGE { 0 } else { size }

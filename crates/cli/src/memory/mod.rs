@@ -4,14 +4,18 @@ mod guard;
 mod meter;
 
 pub use guard::MemoryGuard;
-pub(crate) use guard::set_limit;
+pub(crate) use guard::{left, limit, set_limit};
 pub(crate) use meter::{Span, count_this_thread};
 
 /// What is assumed where the system does not tell.
 const FALLBACK: u64 = 8 << 30;
 
+/// Address space that stacks of threads and the allocator's own books take.
+const RESERVE: u64 = 64 << 20;
+
 /// The default limit: the least of 3/4 of the machine's memory, the process's
-/// address space limit (`ulimit -v`) and the control group's limit.
+/// address space limit (`ulimit -v`) and the control group's limit. Of the
+/// address space, what is mapped already and [`RESERVE`] are left out.
 pub(crate) fn default_limit() -> u64 {
     let file = |path: &str| {
         std::fs::File::open(path)
@@ -20,6 +24,8 @@ pub(crate) fn default_limit() -> u64 {
     };
     let total = file("/proc/meminfo").as_deref().and_then(total_memory);
     let space = file("/proc/self/limits").as_deref().and_then(address_space);
+    let mapped = file("/proc/self/status").as_deref().and_then(mapped);
+    let space = space.map(|bytes| room(bytes, mapped.unwrap_or(0)));
     let group = [
         "/sys/fs/cgroup/memory.max",
         "/sys/fs/cgroup/memory/memory.limit_in_bytes",
@@ -36,11 +42,25 @@ pub(crate) fn default_limit() -> u64 {
         .unwrap_or(FALLBACK)
 }
 
+/// What an address space of `bytes` leaves for results; a quarter at least, so
+/// that small work goes on under any limit that lets the program start.
+fn room(bytes: u64, mapped: u64) -> u64 {
+    bytes.saturating_sub(mapped + RESERVE).max(bytes / 4)
+}
+
 /// Bytes from "MemTotal:       16384 kB".
 fn total_memory(meminfo: &str) -> Option<u64> {
-    let line = meminfo
-        .lines()
-        .find_map(|line| line.strip_prefix("MemTotal:"))?;
+    kibibytes(meminfo, "MemTotal:")
+}
+
+/// Bytes of address space in use, from "VmSize:     3048 kB".
+fn mapped(status: &str) -> Option<u64> {
+    kibibytes(status, "VmSize:")
+}
+
+/// The bytes of a line such as "MemTotal:       16384 kB".
+fn kibibytes(table: &str, label: &str) -> Option<u64> {
+    let line = table.lines().find_map(|line| line.strip_prefix(label))?;
     let kibibytes: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
     Some(kibibytes * 1024)
 }
@@ -118,6 +138,9 @@ mod tests {
         assert_eq!(address_space(limits), Some(512_000_000));
         let unlimited = "Max address space         unlimited            unlimited            bytes";
         assert_eq!(address_space(unlimited), None);
+        assert_eq!(mapped("Name:\tx\nVmSize:\t    16 kB\n"), Some(16 << 10));
+        assert_eq!(room(1 << 30, 1 << 20), (1 << 30) - (1 << 20) - RESERVE);
+        assert_eq!(room(64 << 20, 60 << 20), 16 << 20);
         assert!(default_limit() > 0);
     }
 }

@@ -147,6 +147,10 @@ impl Observer for OutputObserver<'_> {
         self.inner.finished(node, run);
     }
 
+    fn memory_left(&self) -> Option<u64> {
+        self.inner.memory_left()
+    }
+
     fn cancelled(&self) -> bool {
         self.inner.cancelled()
     }

@@ -177,13 +177,10 @@ impl<'a> Outputs<'a> {
     fn failed(&self, target: &Target, message: String) -> Box<Diagnostic> {
         let span = target.span.clone();
         let source = &self.plan.source;
-        Box::new(Diagnostic::error(
-            "output_failed",
-            source,
-            span,
-            message,
-            "",
-        ))
+        let problem = Diagnostic::error("output_failed", source, span, message, "");
+        let help = "what stood there before is untouched; make room or give leave to write, or \
+                    write elsewhere with `--out DIR`";
+        Box::new(problem.with_help(help))
     }
 }
 

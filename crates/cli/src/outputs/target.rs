@@ -132,7 +132,8 @@ fn target(
 ) -> Result<Target, Box<Diagnostic>> {
     let format = format(plan, output, registry)?;
     let fail = |code, message: String, remark: &str| {
-        Box::new(error(plan, code, &output.span, message, remark))
+        let help = "name another file; `--out DIR` moves all outputs";
+        Box::new(error(plan, code, &output.span, message, remark).with_help(help))
     };
     let name = printable(&output.path);
     let path = locate(folders.out, Path::new(&output.path)).map_err(|reason| {

@@ -92,5 +92,5 @@ fn given(run: impl FnOnce(&mut dyn std::io::Write, &mut dyn std::io::Write) -> u
 }
 
 fn content(path: &Path) -> Vec<u8> {
-    crate::graph_file::read_plain(path, u64::MAX).unwrap()
+    tessgraph_graph::world::read_plain(path, u64::MAX).unwrap()
 }

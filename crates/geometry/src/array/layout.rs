@@ -1,7 +1,7 @@
 //! Which component goes where, and where its elements start in the output.
 
 use super::{ArrayDomain, ArrayOptions, NO_COMPONENT, Piece, faces};
-use crate::{Domain, GeometryError, Mesh, Topology};
+use crate::{Domain, GeometryError, Mesh, Monitor, Topology};
 
 /// How much an array would hold.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -146,14 +146,16 @@ impl<'a> Layout<'a> {
         base: &'a Mesh,
         pieces: &[Piece],
         options: &ArrayOptions<'a>,
+        monitor: &dyn Monitor,
     ) -> Result<Self, GeometryError> {
         let cells = match options.domain {
             ArrayDomain::Face => base.face_count(),
             ArrayDomain::Parent(grids) => grids.len(),
         };
         let meshes: Vec<&Mesh> = pieces.iter().map(|piece| &piece.mesh).collect();
-        // Refuses what cannot be indexed before anything is allocated.
+        // Refuses what cannot be indexed or held before anything is allocated.
         let counts = array_counts(&meshes, cells, options.choose)?;
+        monitor.afford(counts.bytes.into())?;
         check_turns(options.turns, cells)?;
         let mut layout = Self {
             base: base.topology(),

@@ -217,7 +217,7 @@ pub fn array_components_with<D: Displace + ?Sized>(
         .iter()
         .map(|component| Piece::new(component, fit, options.height, directions))
         .collect::<Result<Vec<_>, _>>()?;
-    let layout = Layout::new(base, &pieces, options)?;
+    let layout = Layout::new(base, &pieces, options, monitor)?;
     if !options.allow_zero_directions {
         check_directions(directions, &pieces, &layout)?;
     }

@@ -1,9 +1,15 @@
 //! The one triangulation of a mesh's polygons.
 
+use std::cell::Cell;
+
 use glam::DVec3;
 
 use super::Mesh;
 use crate::normals::newell;
+
+/// How often ear clipping looks at a corner of one face before it gives up: a
+/// second or two, hundreds of times what faces that people draw need.
+const MOST_LOOKS: u64 = 1 << 28;
 
 /// Triangles of all faces, and where each face's triangles start.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,7 +27,8 @@ impl Mesh {
     /// A non-planar polygon has no one surface; this is the one that distances,
     /// areas, intersections and file writers of this crate all mean. A face of
     /// n corners gives n - 2 triangles. Cost: O(corners), and O(n²) for a
-    /// concave face of n corners.
+    /// concave face of n corners, up to 2²⁸ looks at corners: the rest of a face
+    /// that takes more, one of tens of thousands of corners, is a fan.
     pub fn triangles(&self) -> Triangles {
         let count = self.corner_count().saturating_sub(2 * self.face_count());
         let mut out = Triangles {
@@ -76,23 +83,28 @@ fn is_simple_fan(count: usize, place: impl Fn(usize) -> DVec3) -> bool {
 
 /// Ear clipping in the plane of the polygon's Newell normal; `ears` receives
 /// corner triples. Always yields `count - 2` triangles: when rounding or a
-/// self-crossing outline leaves no ear, the corner with the largest turn is cut.
+/// self-crossing outline leaves no ear, the corner with the largest turn is cut,
+/// and what is left after [`MOST_LOOKS`] becomes a fan.
 fn clip_ears(count: usize, place: impl Fn(usize) -> DVec3, ears: &mut Vec<[u32; 3]>) {
     let normal = normal_of(count, &place);
     ears.clear();
     let mut ring: Vec<u32> = (0..count as u32).collect();
     let at = |corner: u32| place(corner as usize);
     let turn = |a: u32, b: u32, c: u32| (at(b) - at(a)).cross(at(c) - at(b)).dot(normal);
-    while ring.len() > 3 {
+    let looks = Cell::new(0u64);
+    while ring.len() > 3 && looks.get() < MOST_LOOKS {
         let n = ring.len();
         let triple = |k: usize| (ring[(k + n - 1) % n], ring[k], ring[(k + 1) % n]);
         let is_ear = |&k: &usize| {
             let (a, b, c) = triple(k);
-            turn(a, b, c) > 0.0
+            looks.set(looks.get() + 1);
+            looks.get() < MOST_LOOKS
+                && turn(a, b, c) > 0.0
                 && ring
                     .iter()
                     .filter(|&&p| p != a && p != b && p != c)
                     .all(|&p| {
+                        looks.set(looks.get() + 1);
                         // Outside or on the border of the candidate triangle.
                         turn(a, b, p) <= 0.0 || turn(b, c, p) <= 0.0 || turn(c, a, p) <= 0.0
                     })
@@ -110,5 +122,5 @@ fn clip_ears(count: usize, place: impl Fn(usize) -> DVec3, ears: &mut Vec<[u32; 
         ears.push([a, b, c]);
         ring.remove(k);
     }
-    ears.push([ring[0], ring[1], ring[2]]);
+    ears.extend((1..ring.len() - 1).map(|k| [ring[0], ring[k], ring[k + 1]]));
 }

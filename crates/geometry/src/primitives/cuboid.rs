@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 
-use super::{UV, check_cells, check_counts, check_size};
+use super::{UV, check_cells, check_counts, check_size, quad_bytes};
 use crate::mesh::{Attribute, AttributeValues, Domain};
 use crate::{GeometryError, Mesh, Topology};
 
@@ -29,12 +29,7 @@ use crate::{GeometryError, Mesh, Topology};
 pub fn cuboid(size: DVec3, cells: [usize; 3], center: bool) -> Result<Mesh, GeometryError> {
     check_size("the size of the cuboid", &size.to_array())?;
     check_cells(&cells, 1)?;
-    let [x, y, z] = cells.map(|count| count as u128);
-    let faces = x
-        .saturating_mul(y)
-        .saturating_add(y.saturating_mul(z))
-        .saturating_add(z.saturating_mul(x))
-        .saturating_mul(2);
+    let faces = face_count(cells);
     check_counts(faces.saturating_add(2), faces)?;
     let shell = Shell { cells };
     let shift = if center { size * 0.5 } else { DVec3::ZERO };
@@ -54,6 +49,20 @@ pub fn cuboid(size: DVec3, cells: [usize; 3], center: bool) -> Result<Mesh, Geom
     let topology = Arc::new(Topology::uniform(faces as usize + 2, 4, corners)?);
     let values = AttributeValues::Vector2(uv.into());
     Mesh::new(positions, topology)?.with_attribute(Attribute::new(UV, Domain::Corner, values))
+}
+
+/// Bytes that [`cuboid`] takes for its result, to ask for before it is made.
+pub fn cuboid_bytes(cells: [usize; 3]) -> u128 {
+    let faces = face_count(cells);
+    quad_bytes(faces.saturating_add(2), faces)
+}
+
+fn face_count(cells: [usize; 3]) -> u128 {
+    let [x, y, z] = cells.map(|count| count as u128);
+    x.saturating_mul(y)
+        .saturating_add(y.saturating_mul(z))
+        .saturating_add(z.saturating_mul(x))
+        .saturating_mul(2)
 }
 
 /// A side of the box: where its corner (0, 0) is (0 low, 1 high on each axis)

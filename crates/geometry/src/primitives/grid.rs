@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::{check_size, parametric_surface};
+use super::{check_size, parametric_surface, quad_bytes};
 use crate::{GeometryError, Mesh, Unmonitored};
 
 /// A flat grid of quads in the xy plane, facing up, with a corner attribute `uv`.
@@ -26,6 +26,12 @@ pub fn grid(cells: [usize; 2], size: DVec2, center: bool) -> Result<Mesh, Geomet
     let shift = if center { 0.5 } else { 0.0 };
     let place = |u: f64, v: f64| DVec3::new((u - shift) * size.x, (v - shift) * size.y, 0.0);
     parametric_surface(cells, [false, false], place, &Unmonitored)
+}
+
+/// Bytes that [`grid`] takes for its result, to ask for before it is made.
+pub fn grid_bytes(cells: [usize; 2]) -> u128 {
+    let [x, y] = cells.map(|count| count as u128);
+    quad_bytes((x + 1).saturating_mul(y + 1), x.saturating_mul(y))
 }
 
 #[cfg(test)]

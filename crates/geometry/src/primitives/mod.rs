@@ -4,8 +4,8 @@ mod cuboid;
 mod grid;
 mod surface;
 
-pub use cuboid::cuboid;
-pub use grid::grid;
+pub use cuboid::{cuboid, cuboid_bytes};
+pub use grid::{grid, grid_bytes};
 pub use surface::parametric_surface;
 
 use crate::GeometryError;
@@ -37,6 +37,14 @@ fn check_cells(cells: &[usize], least: usize) -> Result<(), GeometryError> {
         }),
         None => Ok(()),
     }
+}
+
+/// Bytes of a mesh of quads with texture coordinates at its corners.
+fn quad_bytes(vertices: u128, faces: u128) -> u128 {
+    // Position; vertex and uv of a corner; offset of a face.
+    let face = 4 * (4 + 16) + 4;
+    let faces = faces.saturating_mul(face);
+    vertices.saturating_mul(24).saturating_add(faces)
 }
 
 /// Refuses what 32-bit indices cannot number, before anything is allocated.

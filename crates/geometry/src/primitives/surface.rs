@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 
-use super::{UV, check_cells, check_counts};
+use super::{UV, check_cells, check_counts, quad_bytes};
 use crate::mesh::{Attribute, AttributeValues, Domain};
 use crate::{GeometryError, Mesh, Monitor, Topology, parallel};
 
@@ -20,7 +20,8 @@ use crate::{GeometryError, Mesh, Monitor, Topology, parallel};
 /// # Errors
 /// [`GeometryError::NonFiniteSurface`] with the (u, v) where `f` is NaN or
 /// infinite; [`GeometryError::OutOfRange`] with no cells, or fewer than 3 where
-/// closed; [`GeometryError::TooMany`] before anything is allocated;
+/// closed; [`GeometryError::TooMany`] and
+/// [`GeometryError::OutOfMemory`] before anything is allocated;
 /// [`GeometryError::Cancelled`].
 ///
 /// ```
@@ -44,10 +45,10 @@ pub fn parametric_surface(
     }
     let points = |k: usize| cells[k] as u128 + u128::from(!closed[k]);
     // Two counts below 2⁶⁵ may overflow even 128 bits only in theory.
-    check_counts(
-        points(0).saturating_mul(points(1)),
-        (cells[0] as u128).saturating_mul(cells[1] as u128),
-    )?;
+    let vertices = points(0).saturating_mul(points(1));
+    let faces = (cells[0] as u128).saturating_mul(cells[1] as u128);
+    check_counts(vertices, faces)?;
+    monitor.afford(quad_bytes(vertices, faces))?;
     let (columns, rows) = (points(0) as usize, points(1) as usize);
     let parameter = |k: usize, cell: usize| cell as f64 / cells[k] as f64;
     let positions = parallel::map(columns * rows, monitor, |k| {

@@ -109,7 +109,7 @@ pub struct Subdivision {
 ///
 /// # Errors
 /// [`GeometryError::OutOfRange`] above [`MAX_LEVELS`]; [`GeometryError::TooMany`]
-/// before anything is allocated; [`GeometryError::NonManifold`] with the edges
+/// and [`GeometryError::OutOfMemory`] before anything is allocated; [`GeometryError::NonManifold`] with the edges
 /// that have more than two faces; [`GeometryError::RepeatedVertex`];
 /// [`GeometryError::NonFiniteVertex`] when sums of huge coordinates overflow;
 /// [`GeometryError::Cancelled`].
@@ -136,7 +136,8 @@ pub fn subdivide(
             requirement: "it must lie in 0 to 8",
         });
     }
-    subdivided_counts(mesh, options.levels)?;
+    let counts = subdivided_counts(mesh, options.levels)?;
+    monitor.afford(counts.bytes)?;
     let refiner = Refiner::new(mesh, options, monitor)?;
     let positions = refiner.run(mesh.positions(), monitor)?;
     if options.levels == 0 {

@@ -184,6 +184,12 @@ pub trait Observer: Sync {
     /// A node is dealt with.
     fn finished(&self, _node: usize, _run: &NodeRun) {}
 
+    /// Bytes that the run may still take; `None` without a limit. Nodes ask
+    /// before they make something large.
+    fn memory_left(&self) -> Option<u64> {
+        None
+    }
+
     /// Whether the evaluation should stop; polled often.
     fn cancelled(&self) -> bool {
         false

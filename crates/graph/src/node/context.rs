@@ -10,6 +10,10 @@ use crate::units::Units;
 use crate::value::FilePath;
 use crate::world::World;
 
+/// The way out where a file cannot be read.
+const FILE_HELP: &str =
+    "name a plain file that you may read; paths begin at the folder of the graph file";
+
 /// A file that a node found only while reading another: a material library, a
 /// glTF buffer. Its result depends on it too.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
@@ -75,7 +79,7 @@ impl<'a> EvalCx<'a> {
     pub fn read(&self, path: &FilePath) -> Result<Arc<[u8]>, NodeError> {
         self.world
             .read(path.as_str())
-            .map_err(|error| NodeError::new(error.to_string()))
+            .map_err(|error| NodeError::new(error.to_string()).with_help(FILE_HELP))
     }
 
     /// The content of a file named inside another file: `relative` is taken

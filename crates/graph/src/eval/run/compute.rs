@@ -118,4 +118,8 @@ impl Monitor for NodeMonitor<'_> {
     fn progress(&self, done: u64, total: u64) {
         self.run.observer.progress(self.node, done, total);
     }
+
+    fn memory_left(&self) -> Option<u64> {
+        self.run.observer.memory_left()
+    }
 }

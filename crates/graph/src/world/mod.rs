@@ -1,9 +1,14 @@
 //! Where files come from: a disk, or memory in tests.
 
+mod plain;
+
 use std::collections::BTreeMap;
 use std::fmt;
 use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
+
+use plain::plain_file;
+pub use plain::read_plain;
 
 /// The files a graph can read, by path relative to its folder.
 pub trait World: Sync {
@@ -36,6 +41,7 @@ impl std::error::Error for FileError {}
 pub struct DiskWorld {
     root: PathBuf,
     allowed: Vec<PathBuf>,
+    largest: u64,
 }
 
 impl DiskWorld {
@@ -49,7 +55,18 @@ impl DiskWorld {
             .iter()
             .map(|path| path.canonicalize())
             .collect::<Result<_, _>>()?;
-        Ok(Self { root, allowed })
+        let largest = u64::MAX;
+        Ok(Self {
+            root,
+            allowed,
+            largest,
+        })
+    }
+
+    /// The same, but files above so many bytes are refused before they are read.
+    #[must_use]
+    pub fn limited(self, largest: u64) -> Self {
+        Self { largest, ..self }
     }
 
     /// The file that `path` means, with symbolic links followed.
@@ -85,9 +102,7 @@ impl DiskWorld {
             )))
         }
     }
-}
 
-impl DiskWorld {
     /// The plain file that `path` means, as [`DiskWorld::resolve`] finds it.
     ///
     /// # Errors
@@ -98,28 +113,19 @@ impl DiskWorld {
             path: path.to_owned(),
             reason,
         };
-        let metadata = found.metadata().map_err(|error| fail(error.to_string()))?;
-        if !metadata.is_file() {
-            let what = if metadata.is_dir() {
-                "it is a folder"
-            } else {
-                "it is not a plain file"
-            };
-            return Err(fail(what.to_owned()));
-        }
+        plain_file(&found).map_err(fail)?;
         Ok(found)
     }
 }
 
 impl World for DiskWorld {
     fn read(&self, path: &str) -> Result<Arc<[u8]>, FileError> {
-        let found = self.file(path)?;
+        let found = self.resolve(path)?;
         let fail = |reason: String| FileError {
             path: path.to_owned(),
             reason,
         };
-        #[allow(clippy::disallowed_methods, reason = "this is what nodes read through")]
-        let bytes = std::fs::read(&found).map_err(|error| fail(error.to_string()))?;
+        let bytes = read_plain(&found, self.largest).map_err(fail)?;
         Ok(bytes.into())
     }
 }
