@@ -6,6 +6,7 @@ mod cli;
 mod closed_forms;
 mod determinism;
 mod errors;
+mod faults;
 mod figures;
 mod graphs;
 mod nodes;
