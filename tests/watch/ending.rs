@@ -63,10 +63,22 @@ fn no_input_ends_it() {
 #[test]
 fn too_large_a_result_ends_only_its_run() {
     let (_folder, mut watch) = Watch::on_grid(2, &["--max-memory", "80MB"]);
-    for faces in 3..5 {
-        write(&watch.path("g.ron"), &graph(5_000_000));
+    // A grid asks first, and fails; joining does not, and ends the process,
+    // which starts again in its own place.
+    let joined = |text: String| {
+        let list = vec!["\"grid\""; 60].join(", ");
+        let join =
+            format!("\"size\": MeasureMesh(mesh: \"all\"), \"all\": JoinMeshes(meshes: [{list}])");
+        text.replace("\"size\": MeasureMesh(mesh: \"grid\")", &join)
+    };
+    for (faces, text, told) in [
+        (3, graph(5_000_000), "it needs about"),
+        (4, joined(graph(20_000)), "out_of_memory"),
+        (5, joined(graph(25_000)), "out_of_memory"),
+    ] {
+        write(&watch.path("g.ron"), &text);
         assert_eq!(watch.next()["ok"], false);
-        watch.line_with("out_of_memory");
+        watch.line_with(told);
         assert_eq!(watch.faces(), faces - 1, "the last good output stays");
         write(&watch.path("g.ron"), &graph(faces));
         watch.until_faces(faces);
