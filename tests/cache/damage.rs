@@ -178,6 +178,26 @@ fn a_clean_up_keeps_to_its_budget_and_nothing_breaks() {
 }
 
 #[test]
+fn a_folder_is_kept_to_its_budget_while_it_is_written_to() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let filled = Filled::new(GRAPH);
+    let whole = CacheFolder::open(filled.folder.path()).expect("a cache");
+    // Room for two variants of the graph, of ten that are computed.
+    let budget = 2 * whole.stats().bytes;
+    let engine = Engine::with_disk(0, folder.path()).limiting_disk(budget);
+    for step in 1..=10 {
+        let text = GRAPH.replace("\"t\": 0.1", &format!("\"t\": 0.{step}1"));
+        Run::with(&engine, &text, true);
+    }
+    engine.flush();
+    let left = CacheFolder::open(folder.path()).expect("a cache").stats();
+    // Looks follow an eighth of the budget's writing, and a file may be larger.
+    assert!(left.bytes <= budget * 3 / 2, "{} of {budget}", left.bytes);
+    let run = Run::with(&Engine::with_disk(MEMORY, folder.path()), GRAPH, true);
+    assert_eq!(run.digests(), filled.expected);
+}
+
+#[test]
 fn a_clean_up_removes_values_before_what_says_they_need_not_be_computed() {
     let filled = Filled::new(GRAPH);
     let cache = CacheFolder::open(filled.folder.path()).expect("a cache");

@@ -46,12 +46,24 @@ impl Engine {
     /// in `folder`, for other processes and later ones.
     ///
     /// A folder that cannot be used or written to is no failure: the engine
-    /// works without it, and [`CacheStats::warning`] says why.
+    /// works without it, and [`CacheStats::warning`] says why. It is kept to 20
+    /// GB, looked after once an hour and after much writing; see
+    /// [`Engine::limiting_disk`].
     pub fn with_disk(bytes: u64, folder: &Path) -> Self {
         Self {
             cache: Some(Arc::new(Cache::new(bytes, Some(folder)))),
             verified: 0,
         }
+    }
+
+    /// The same engine, whose folder is kept to about `bytes`: what was used long
+    /// ago, is large, and was quick to compute goes first.
+    #[must_use]
+    pub fn limiting_disk(self, bytes: u64) -> Self {
+        if let Some(cache) = &self.cache {
+            cache.set_disk_budget(bytes);
+        }
+        self
     }
 
     /// An engine that computes everything anew in every evaluation.

@@ -29,10 +29,18 @@ pub(super) const TEMPORARY: &str = ".new-";
 /// A file used again after this time is marked as used, so that `gc` keeps it.
 const REFRESH: Duration = Duration::from_secs(6 * 3600);
 
+/// Bytes of files the folder is kept to unless another budget is asked for.
+const BUDGET: u64 = 20_000_000_000;
+
+/// How long a folder goes without a look at its size.
+const SWEEP: Duration = Duration::from_secs(3600);
+
 /// A folder of cache files.
 #[derive(Debug)]
 pub(super) struct Disk {
     root: PathBuf,
+    budget: AtomicU64,
+    written: AtomicU64,
     writable: AtomicBool,
     warning: Mutex<Option<String>>,
 }
@@ -52,6 +60,8 @@ impl Disk {
         fs::create_dir_all(root).map_err(|error| unusable(error.to_string()))?;
         let disk = Self {
             root: root.to_owned(),
+            budget: AtomicU64::new(BUDGET),
+            written: AtomicU64::new(0),
             writable: AtomicBool::new(true),
             warning: Mutex::default(),
         };
@@ -72,6 +82,31 @@ impl Disk {
 
     pub(super) fn root(&self) -> &Path {
         &self.root
+    }
+
+    /// Sets the bytes that the folder is kept to.
+    pub(super) fn set_budget(&self, bytes: u64) {
+        self.budget.store(bytes, Ordering::Relaxed);
+    }
+
+    /// The budget, if it is time to look whether the folder keeps to it: when
+    /// nobody did for an hour, or this process has written an eighth of it.
+    /// Asking counts as looking.
+    pub(super) fn due_budget(&self) -> Option<u64> {
+        if !self.writable.load(Ordering::Relaxed) {
+            return None;
+        }
+        let budget = self.budget.load(Ordering::Relaxed);
+        let tag = self.root.join(TAG_FILE);
+        let much = self.written.load(Ordering::Relaxed) > budget / 8;
+        // The tag's time says when somebody looked.
+        let recent = || fs::metadata(&tag).is_ok_and(|found| age(&found) < SWEEP);
+        if !much && recent() {
+            return None;
+        }
+        self.written.store(0, Ordering::Relaxed);
+        refresh(&tag, Duration::ZERO);
+        Some(budget)
     }
 
     /// Why nothing is written any more, if that is so.
@@ -101,7 +136,7 @@ impl Disk {
         };
         let value = frame::content(kind, address, &file).and_then(decode);
         match value {
-            Some(_) => refresh(&path),
+            Some(_) => refresh(&path, REFRESH),
             None => self.remove(kind, address),
         }
         value
@@ -111,6 +146,8 @@ impl Disk {
     pub(super) fn write(&self, kind: FileKind, address: Digest, cost: f64, content: &[u8]) {
         if self.writable.load(Ordering::Relaxed) {
             let header = frame::header(kind, address, cost, content);
+            let bytes = (header.len() + content.len()) as u64;
+            self.written.fetch_add(bytes, Ordering::Relaxed);
             self.keep(self.replace(&self.path(kind, address), &[&header, content]));
         }
     }
@@ -192,9 +229,9 @@ pub(super) fn age(metadata: &fs::Metadata) -> Duration {
         .unwrap_or_default()
 }
 
-/// Marks a file as used just now if that has not been done for a while.
-fn refresh(path: &Path) {
-    let old = fs::metadata(path).is_ok_and(|metadata| age(&metadata) > REFRESH);
+/// Marks a file as used just now if that has not been done for so long.
+fn refresh(path: &Path, after: Duration) {
+    let old = fs::metadata(path).is_ok_and(|metadata| age(&metadata) > after);
     if old && let Ok(file) = File::options().write(true).open(path) {
         #[allow(
             clippy::disallowed_methods,

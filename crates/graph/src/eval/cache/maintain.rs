@@ -4,6 +4,7 @@
 use std::fs;
 use std::io::Read;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::Duration;
 
 use tessgraph_geometry::digest::Digest;
@@ -17,7 +18,7 @@ const ABANDONED: Duration = Duration::from_secs(3600);
 /// A cache folder, to be looked after; other processes may use it meanwhile.
 #[derive(Debug)]
 pub struct CacheFolder {
-    disk: Disk,
+    disk: Arc<Disk>,
 }
 
 /// What a cache folder holds.
@@ -66,7 +67,13 @@ impl CacheFolder {
     /// # Errors
     /// Why it cannot be used, as a sentence.
     pub fn open(folder: &Path) -> Result<Self, String> {
-        Disk::open(folder).map(|disk| Self { disk })
+        Disk::open(folder).map(|disk| Self::of(&Arc::new(disk)))
+    }
+
+    /// The folder that an engine uses.
+    pub(super) fn of(disk: &Arc<Disk>) -> Self {
+        let disk = Arc::clone(disk);
+        Self { disk }
     }
 
     /// What the folder holds. Cost: a look at every file's metadata.

@@ -93,6 +93,13 @@ impl Cache {
         }
     }
 
+    /// Sets the bytes that the folder is kept to.
+    pub(super) fn set_disk_budget(&self, bytes: u64) {
+        if let Some(disk) = &self.disk {
+            disk.set_budget(bytes);
+        }
+    }
+
     pub(super) fn stats(&self) -> CacheStats {
         let (values, bytes) = {
             let memory = lock(&self.values);

@@ -10,6 +10,7 @@ use tessgraph_geometry::digest::Digest;
 use super::disk::Disk;
 use super::entry::{Entry, Known};
 use super::frame::FileKind;
+use super::maintain::CacheFolder;
 use crate::eval::Values;
 use crate::value::Value;
 use crate::value::encode::{Encoder, encode_topology};
@@ -80,10 +81,16 @@ fn start(disk: &Arc<Disk>) -> Option<SyncSender<Job>> {
     Some(sender)
 }
 
-fn work_through(disk: &Disk, jobs: &Receiver<Job>) {
+fn work_through(disk: &Arc<Disk>, jobs: &Receiver<Job>) {
     for job in jobs {
         match job {
-            Job::Store(work) => store(disk, &work),
+            Job::Store(work) => {
+                store(disk, &work);
+                // Long watching and large studies would fill the disk.
+                if let Some(budget) = disk.due_budget() {
+                    CacheFolder::of(disk).gc(budget);
+                }
+            }
             Job::Flush(done) => {
                 // Nobody may be waiting any more.
                 let _ = done.send(());
