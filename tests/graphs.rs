@@ -24,7 +24,7 @@ fn shipped_graphs() {
             text.starts_with(&format!("// {name}.ron: ")),
             "{name} begins with what it shows"
         );
-        let ran = Ran::run(support::load(&name, &text), &world);
+        let ran = Ran::run(support::load_in(&name, &text, &world), &world);
         let outputs: Vec<_> = ran
             .plan
             .outputs

@@ -9,6 +9,7 @@ mod errors;
 mod faults;
 mod figures;
 mod graphs;
+mod includes;
 mod nodes;
 mod peer;
 mod per_vertex;

@@ -67,6 +67,15 @@ pub(crate) fn try_load(name: &str, text: &str) -> Result<Plan, Vec<Diagnostic>> 
     tessgraph_graph::load(name, text.as_bytes(), NODES, &LoadOptions::default())
 }
 
+/// Loads a graph that includes others of `world`, or shows what is wrong.
+pub(crate) fn load_in(name: &str, text: &str, world: &dyn World) -> Plan {
+    let options = LoadOptions::default();
+    let loaded = tessgraph_graph::load_with(name, text.as_bytes(), NODES, &options, world);
+    loaded
+        .plan
+        .unwrap_or_else(|diagnostics| panic!("{}", shown(&diagnostics)))
+}
+
 /// Diagnostics as text: code, position, message.
 pub(crate) fn shown(diagnostics: &[Diagnostic]) -> String {
     let line = |diagnostic: &Diagnostic| {

@@ -53,6 +53,10 @@ impl RecordingWorld {
 }
 
 impl World for RecordingWorld {
+    fn identity(&self, path: &str) -> String {
+        self.disk.identity(path)
+    }
+
     fn read(&self, path: &str) -> Result<Arc<[u8]>, FileError> {
         if let Ok(place) = self.disk.resolve(path) {
             self.read

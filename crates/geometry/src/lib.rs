@@ -29,7 +29,7 @@ mod normals_uv;
 mod offset;
 pub mod parallel;
 pub mod primitives;
-mod random;
+pub mod random;
 mod rebuild;
 pub mod subdivide;
 pub mod surface;

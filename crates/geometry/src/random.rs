@@ -2,7 +2,7 @@
 
 /// A number in 0..1 that depends on seed and id alone (SplitMix64, Steele et
 /// al. 2014, over both).
-pub(crate) fn uniform(seed: u64, id: i64) -> f64 {
+pub fn uniform(seed: u64, id: i64) -> f64 {
     let step = 0x9E37_79B9_7F4A_7C15;
     let mixed = mix(mix(seed.wrapping_add(step))
         .wrapping_add(id as u64)

@@ -61,6 +61,15 @@ pub struct Label {
     pub message: String,
 }
 
+/// A place in a text of its own, with a remark.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Place {
+    /// The text.
+    pub source: Arc<Source>,
+    /// Where in it, and the remark.
+    pub label: Label,
+}
+
 /// One thing that is wrong, with its place and a way out.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Diagnostic {
@@ -75,6 +84,9 @@ pub struct Diagnostic {
     /// The place, first, and any other places that explain it. Empty when the
     /// problem has no place in the text.
     pub labels: Vec<Label>,
+    /// Places in other texts that explain it: where a graph was included, or
+    /// what another graph declares.
+    pub elsewhere: Vec<Place>,
     /// What to do about it.
     pub help: Option<String>,
     /// The node it is about, if it is about one.
@@ -99,6 +111,7 @@ impl Diagnostic {
                 span,
                 message: remark.into(),
             }],
+            elsewhere: Vec::new(),
             help: None,
             node: None,
         }
@@ -111,6 +124,13 @@ impl Diagnostic {
             span,
             message: message.into(),
         });
+        self
+    }
+
+    /// Adds places in other texts.
+    #[must_use]
+    pub fn with_places(mut self, places: impl IntoIterator<Item = Place>) -> Self {
+        self.elsewhere.extend(places);
         self
     }
 

@@ -8,6 +8,7 @@ pub mod diagnostic;
 pub mod document;
 pub mod eval;
 pub mod expr;
+pub mod forms;
 pub mod names;
 pub mod node;
 pub mod plan;
@@ -17,7 +18,7 @@ pub mod value;
 pub mod world;
 
 pub use check::{LoadOptions, Loaded, load, load_with};
-pub use diagnostic::{Diagnostic, Label, Severity, Source};
+pub use diagnostic::{Diagnostic, Label, Place, Severity, Source};
 pub use eval::{Engine, Evaluation, NodeRun, Observer, Outcome, Silent};
 pub use node::{Args, EvalCx, Inputs, Node, NodeError, NodeSpec, Outputs};
 pub use plan::Plan;

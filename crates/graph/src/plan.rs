@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use crate::diagnostic::Source;
+use crate::diagnostic::{Place, Source};
 use crate::expr::Expression;
 use crate::node::NodeSpec;
 use crate::units::Units;
@@ -38,7 +38,8 @@ pub struct PlanParameter {
 /// A node of the plan.
 #[derive(Debug, Clone)]
 pub struct PlanNode {
-    /// Its name in the file.
+    /// Its name in the file; behind those of the nodes that include its graph:
+    /// `panels/fitted`.
     pub name: String,
     /// What kind of node it is.
     pub spec: &'static NodeSpec,
@@ -46,6 +47,13 @@ pub struct PlanNode {
     pub inputs: Vec<PlanInput>,
     /// Where it is defined: its kind and inputs.
     pub span: Range<usize>,
+    /// The text it is defined in.
+    pub source: Arc<Source>,
+    /// The unit of every length in that text.
+    pub units: Units,
+    /// Where that text was included, from inside out; nothing for nodes of the
+    /// main graph.
+    pub included: Arc<[Place]>,
 }
 
 /// Where an input's value comes from, and where that is written.

@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use crate::forms::{FORMS, FormSpec};
 use crate::node::{InputSpec, NodeSpec, OutputSpec};
 use crate::units::Units;
 use crate::value::{Kind, Value};
@@ -24,9 +25,35 @@ pub fn markdown(registry: &[NodeSpec]) -> String {
             first_line(spec.doc)
         );
     }
+    page.push_str("\nForms of the language, which include other graphs:\n\n");
+    for form in FORMS {
+        let _ = writeln!(
+            page,
+            "- [{0}](#{1}): {2}",
+            form.name,
+            form.name.to_lowercase(),
+            first_line(form.doc)
+        );
+    }
     for spec in registry {
         page.push('\n');
         page.push_str(&node_markdown(spec));
+    }
+    for form in FORMS {
+        page.push('\n');
+        page.push_str(&form_markdown(form));
+    }
+    page
+}
+
+/// The reference page of one form of the language in Markdown.
+pub fn form_markdown(form: &FormSpec) -> String {
+    let mut page = format!("## {}\n\n{}\n\n", form.name, form.doc);
+    page.push_str("| field | takes | default | meaning |\n|---|---|---|---|\n");
+    for field in form.fields {
+        let (name, takes) = (field.name, field.takes);
+        let default = field.default.unwrap_or("required");
+        let _ = writeln!(page, "| `{name}` | {takes} | {default} | {} |", field.doc);
     }
     page
 }

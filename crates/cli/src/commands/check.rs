@@ -87,9 +87,9 @@ fn missing_files(file: &GraphFile) -> Vec<Diagnostic> {
     let problem = |input: InputFile<'_>| {
         let reason = file.world.problem(&input.path)?;
         let span = input.span.unwrap_or(input.node.span.clone());
-        let source = &file.plan.source;
+        let (source, included) = (&input.node.source, input.node.included.iter().cloned());
         let error = Diagnostic::error("missing_file", source, span, reason.to_string(), "");
-        Some(error.with_node(&input.node.name))
+        Some(error.with_places(included).with_node(&input.node.name))
     };
     input_files(&file.plan)
         .into_iter()

@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use clap::Args;
 use serde_json::{Value as Json, json};
+use tessgraph_graph::forms::{FORMS, FormField, FormSpec, form};
 use tessgraph_graph::names::did_you_mean;
 use tessgraph_graph::node::{InputSpec, NodeSpec, OutputSpec};
 use tessgraph_graph::{Quantity, Units, Value, reference};
@@ -39,8 +40,20 @@ pub(crate) fn nodes(args: &NodesArgs, cx: &mut Context<'_, '_>) -> u8 {
         cx.console.data(&text);
         return OK;
     };
+    if let Some(form) = form(name) {
+        let text = if args.markdown {
+            reference::form_markdown(form)
+        } else if args.json {
+            pretty(&form_json(form))
+        } else {
+            form_page(form)
+        };
+        cx.console.data(&text);
+        return OK;
+    }
     let Some(spec) = registry.iter().find(|spec| spec.name == *name) else {
         let names = registry.iter().map(|spec| spec.name);
+        let names = names.chain(FORMS.iter().map(|form| form.name));
         let help = did_you_mean(name, names)
             .unwrap_or_else(|| "`tessgraph nodes` lists all nodes".to_owned());
         let message = format!("there is no node `{}`", printable(name));
@@ -57,16 +70,44 @@ pub(crate) fn nodes(args: &NodesArgs, cx: &mut Context<'_, '_>) -> u8 {
     OK
 }
 
-/// One line per node.
+/// One line per node, then one per form of the language.
 fn listing(registry: &[NodeSpec]) -> String {
-    let row = |spec: &NodeSpec| {
-        vec![
-            spec.name.to_owned(),
-            reference::first_line(spec.doc).to_owned(),
-        ]
-    };
-    let rows: Vec<_> = registry.iter().map(row).collect();
+    let row = |name: &str, doc| vec![name.to_owned(), reference::first_line(doc).to_owned()];
+    let nodes = registry.iter().map(|spec| row(spec.name, spec.doc));
+    let forms = FORMS.iter().map(|form| row(form.name, form.doc));
+    let rows: Vec<_> = nodes.chain(forms).collect();
     table(&rows, &[Align::Left, Align::Left])
+}
+
+/// The page of one form of the language for the terminal.
+fn form_page(form: &FormSpec) -> String {
+    let mut text = format!("{}\n\n{}\n\nfields\n", form.name, without_fences(form.doc));
+    for field in form.fields {
+        let default = match field.default {
+            Some(default) => format!("default {default}"),
+            None => "required".to_owned(),
+        };
+        let _ = writeln!(text, "  {}: {}; {default}", field.name, field.takes);
+        indent(&mut text, field.doc);
+    }
+    text
+}
+
+fn form_json(form: &FormSpec) -> Json {
+    let field = |field: &FormField| {
+        json!({
+            "name": field.name,
+            "takes": field.takes,
+            "default": field.default,
+            "doc": field.doc,
+        })
+    };
+    json!({
+        "name": form.name,
+        "summary": reference::first_line(form.doc),
+        "doc": form.doc,
+        "fields": form.fields.iter().map(field).collect::<Json>(),
+    })
 }
 
 /// The page of one node for the terminal.

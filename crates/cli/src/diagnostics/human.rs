@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use annotate_snippets::{Annotation, AnnotationKind, Group, Level, Origin, Renderer, Snippet};
-use tessgraph_graph::{Diagnostic, Label, Severity};
+use tessgraph_graph::{Diagnostic, Label, Place, Severity};
 
 use super::position::Lines;
 use crate::console::Console;
@@ -17,6 +17,9 @@ const LONGEST_QUOTE: usize = 16 << 10;
 
 /// Labels over more lines than these are shown on their first line.
 const MOST_LINES: usize = 6;
+
+/// More places in other texts than these are not shown: deep inclusions.
+const MOST_PLACES: usize = 6;
 
 /// Width of the snippets; fixed, so that the text never depends on the terminal.
 const WIDTH: usize = 120;
@@ -51,22 +54,11 @@ pub(super) fn render(diagnostic: &Diagnostic, styled: bool) -> String {
     if diagnostic.labels.is_empty() && !name.is_empty() {
         group = group.element(Origin::path(name.as_ref()));
     }
-    for pieces in pieces(&lines, &diagnostic.labels) {
-        group = match pieces {
-            Piece::Quote {
-                text,
-                line,
-                annotations,
-            } => group.element(
-                Snippet::source(text)
-                    .line_start(line)
-                    .path(name.as_ref())
-                    .annotations(annotations),
-            ),
-            Piece::Place { line, column } => {
-                group.element(Origin::path(name.as_ref()).line(line).char_column(column))
-            }
-        };
+    for piece in pieces(&lines, &diagnostic.labels) {
+        group = with_piece(group, piece, &name);
+    }
+    for place in diagnostic.elsewhere.iter().take(MOST_PLACES) {
+        group = with_piece(group, elsewhere(place), place.source.name());
     }
     if let Some(help) = &diagnostic.help {
         group = group.element(Level::HELP.message(printable(help)));
@@ -77,6 +69,38 @@ pub(super) fn render(diagnostic: &Diagnostic, styled: bool) -> String {
         Renderer::plain()
     };
     renderer.term_width(WIDTH).render(&[group])
+}
+
+fn with_piece<'a>(group: Group<'a>, piece: Piece<'a>, name: &str) -> Group<'a> {
+    let name = printable(name).into_owned();
+    match piece {
+        Piece::Quote {
+            text,
+            line,
+            annotations,
+        } => group.element(
+            Snippet::source(text)
+                .line_start(line)
+                .path(name)
+                .annotations(annotations),
+        ),
+        Piece::Place { line, column } => {
+            group.element(Origin::path(name).line(line).char_column(column))
+        }
+    }
+}
+
+/// A place in another text.
+fn elsewhere(place: &Place) -> Piece<'_> {
+    let lines = Lines::of(place.source.text());
+    let label = std::slice::from_ref(&place.label);
+    quote(&lines, place.label.span.clone(), label, false).unwrap_or_else(|| {
+        let position = lines.position(place.label.span.start);
+        Piece::Place {
+            line: position.line,
+            column: position.column,
+        }
+    })
 }
 
 /// What is shown of the text.

@@ -7,7 +7,7 @@ use super::position::Lines;
 use crate::json::line;
 
 /// One object a line with `code`, `severity`, `message`, `file`, `line`,
-/// `column`, `span`, `labels` and `help`.
+/// `column`, `span`, `labels`, `elsewhere` and `help`.
 ///
 /// `line`, `column` and `span` are those of the first label, and null when the
 /// problem has no place in the text. Columns count characters from 1, spans
@@ -33,6 +33,12 @@ fn object(diagnostic: &Diagnostic, lines: &Lines<'_>) -> Value {
         .iter()
         .map(|label| label_object(label, lines))
         .collect();
+    let elsewhere = diagnostic.elsewhere.iter().map(|place| {
+        let mut object = label_object(&place.label, &Lines::of(place.source.text()));
+        object["file"] = json!(place.source.name());
+        object
+    });
+    let elsewhere: Vec<Value> = elsewhere.collect();
     let first = labels.first().cloned().unwrap_or_default();
     let severity = match diagnostic.severity {
         Severity::Error => "error",
@@ -47,6 +53,7 @@ fn object(diagnostic: &Diagnostic, lines: &Lines<'_>) -> Value {
         "column": first["column"],
         "span": first["span"],
         "labels": labels,
+        "elsewhere": elsewhere,
         "help": diagnostic.help,
     })
 }
@@ -79,7 +86,7 @@ mod tests {
             r#"{"code":"code","severity":"error","message":"what","file":"g.ron","line":2,"#,
             r#""column":4,"span":[7,8],"labels":[{"message":"here","line":2,"column":4,"#,
             r#""span":[7,8]},{"message":"there","line":2,"column":6,"span":[9,10]}],"#,
-            r#""help":"do"}"#,
+            r#""elsewhere":[],"help":"do"}"#,
             "\n"
         );
         assert_eq!(lines(&[diagnostic]), expected);

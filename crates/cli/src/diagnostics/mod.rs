@@ -23,6 +23,7 @@ pub(crate) fn without_place(
         message: message.into(),
         source: Arc::new(Source::new(name, "")),
         labels: Vec::new(),
+        elsewhere: Vec::new(),
         help: None,
         node: None,
     }

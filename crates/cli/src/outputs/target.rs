@@ -276,12 +276,13 @@ pub(crate) fn input_files(plan: &Plan) -> Vec<InputFile<'_>> {
     files
 }
 
-/// The files the graph names as inputs, and the graph file: as they are
-/// written, and where they lie.
+/// The files the graph names as inputs, the graphs it includes, and itself: as
+/// they are written, and where they lie.
 fn input_places(plan: &Plan, folders: &Folders<'_>) -> Vec<(String, PathBuf)> {
-    let named = input_files(plan)
-        .into_iter()
-        .map(|file| (locate(folders.graph, Path::new(&file.path)), file.path));
+    let files = input_files(plan).into_iter().map(|file| file.path);
+    let named = files
+        .chain(plan.included.iter().cloned())
+        .map(|name| (locate(folders.graph, Path::new(&name)), name));
     let graph = folders.file.to_string_lossy().into_owned();
     let all = named.chain([(locate(Path::new(""), folders.file), graph)]);
     all.filter_map(|(place, name)| Some((name, place.ok()?)))

@@ -1,6 +1,7 @@
 //! What is drawn: read from a plan, without places.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 use tessgraph_graph::eval::NodeCost;
 use tessgraph_graph::plan::{PlanInput, PlanNode, ResultRef};
@@ -128,9 +129,9 @@ impl Picture {
         let mut labels: BTreeMap<(usize, usize), BTreeSet<String>> = BTreeMap::new();
         for (index, node) in plan.nodes.iter().enumerate() {
             let cost = costs.get(index).copied().flatten();
-            boxes.push(node_box(plan, node, cost, needed[index]));
+            boxes.push(node_box(node, cost, needed[index]));
             for (spec, input) in node.spec.inputs.iter().zip(&node.inputs) {
-                for parameter in parameters_of(plan, spec.kind, input) {
+                for parameter in parameters_of(plan, node, spec.kind, input) {
                     boxes[parameter].used |= needed[index];
                     let label = labels.entry((parameter, first + index)).or_default();
                     label.insert(spec.name.to_owned());
@@ -221,12 +222,12 @@ fn value_text(value: &Value) -> String {
     printable(&text).replace('\n', " ")
 }
 
-fn node_box(plan: &Plan, node: &PlanNode, cost: Option<NodeCost>, used: bool) -> Item {
+fn node_box(node: &PlanNode, cost: Option<NodeCost>, used: bool) -> Item {
     let name = printable(&node.name).into_owned();
     let about = node.spec.doc.lines().next().unwrap_or_default().trim();
     let mut tip = format!("{name}: {}\n{about}", node.spec.name);
     for (spec, input) in node.spec.inputs.iter().zip(&node.inputs) {
-        if let Some(text) = written(plan, input) {
+        if let Some(text) = written(node, input) {
             let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
             tip += &format!("\n{}: {}", spec.name, cut(&printable(&text)));
         }
@@ -246,16 +247,18 @@ fn node_box(plan: &Plan, node: &PlanNode, cost: Option<NodeCost>, used: bool) ->
 }
 
 /// What is written at an input.
-fn written<'p>(plan: &'p Plan, input: &PlanInput) -> Option<&'p str> {
+fn written<'p>(node: &'p PlanNode, input: &PlanInput) -> Option<&'p str> {
     let span = input.span.clone()?;
-    plan.source.text().get(span)
+    node.source.text().get(span)
 }
 
 /// The parameters that an input's text names. They are gone from the plan,
 /// which holds their values; a name in an expression is one of a parameter, a
 /// node or a function, and these have names of their own.
-fn parameters_of(plan: &Plan, kind: Kind, input: &PlanInput) -> Vec<usize> {
-    let Some(text) = written(plan, input) else {
+fn parameters_of(plan: &Plan, node: &PlanNode, kind: Kind, input: &PlanInput) -> Vec<usize> {
+    // Inside an included graph the same names are those of its own parameters.
+    let own = Arc::ptr_eq(&node.source, &plan.source);
+    let Some(text) = written(node, input).filter(|_| own) else {
         return Vec::new();
     };
     let is_text = matches!(

@@ -52,7 +52,11 @@ fn nodes_are_listed_and_described() {
     let desk = Desk::new();
     let list = desk.program(&["nodes"]);
     assert_eq!(list.status, 0);
-    assert_eq!(list.out.lines().count(), tessgraph_nodes::NODES.len());
+    let forms = tessgraph_graph::forms::FORMS.len();
+    assert_eq!(
+        list.out.lines().count(),
+        tessgraph_nodes::NODES.len() + forms
+    );
     let name = tessgraph_nodes::NODES[0].name;
     let page = desk.program(&["nodes", name]);
     assert!(

@@ -30,7 +30,7 @@ impl Checker<'_, '_> {
             Ok(Scalar::Known(value)) => Some(Origin::Constant(value)),
             Ok(Scalar::Later(expression)) => Some(Origin::Expression(expression)),
             Err(errors) => {
-                self.expression_errors(input, text, errors, &range);
+                self.expression_errors((input.name, input.kind), text, errors, &range);
                 None
             }
         }
@@ -39,7 +39,7 @@ impl Checker<'_, '_> {
     /// A number, or a reference to a field.
     pub(super) fn amount(&mut self, input: &InputSpec, text: &Text) -> Option<Origin> {
         match self.scope.result(&text.value) {
-            Ok(found) if !found.spec.kind.is_scalar() => self.reference(input, Kind::Amount, text),
+            Ok(found) if !found.kind.is_scalar() => self.reference(input, Kind::Amount, text),
             _ => self.scalar(input, Kind::Amount, text),
         }
     }
@@ -54,7 +54,7 @@ impl Checker<'_, '_> {
         let template = match compiled {
             Ok(template) => template,
             Err(errors) => {
-                self.expression_errors(input, text, errors, "");
+                self.expression_errors((input.name, input.kind), text, errors, "");
                 return None;
             }
         };
@@ -66,9 +66,10 @@ impl Checker<'_, '_> {
         Some(Origin::Constant(Value::Formula(Arc::new(formula))))
     }
 
-    fn expression_errors(
+    /// Reports what is wrong with an expression where `name` takes a `kind`.
+    pub(super) fn expression_errors(
         &mut self,
-        input: &InputSpec,
+        (name, kind): (&str, Kind),
         text: &Text,
         errors: Vec<ExprError>,
         range: &str,
@@ -84,7 +85,7 @@ impl Checker<'_, '_> {
             let help = match (error.help, error.code) {
                 (Some(help), _) => help,
                 (None, "out_of_range") => range.to_owned(),
-                (None, _) => format!("`{}` takes {}", input.name, input.kind.label()),
+                (None, _) => format!("`{}` takes {}", shown(name), kind.label()),
             };
             self.problems
                 .add(problem.with_help(help).with_node(self.node));
@@ -93,7 +94,7 @@ impl Checker<'_, '_> {
 }
 
 /// The slot of a result; equal results share one.
-fn slot_of(uses: &mut Vec<ResultUse>, wanted: ResultUse) -> u32 {
+pub(super) fn slot_of(uses: &mut Vec<ResultUse>, wanted: ResultUse) -> u32 {
     let place = uses
         .iter()
         .position(|use_| *use_ == wanted)
@@ -107,7 +108,7 @@ fn slot_of(uses: &mut Vec<ResultUse>, wanted: ResultUse) -> u32 {
 
 impl Scope<'_> {
     /// What a name in an expression means; `slot` hands out a result's slot.
-    fn leaf(
+    pub(super) fn leaf(
         &self,
         name: &str,
         span: Range<usize>,
@@ -115,9 +116,11 @@ impl Scope<'_> {
     ) -> ResolvedName {
         let head = name.split('.').next().unwrap_or(name);
         match self.find(head) {
-            Some(Named::Param(index)) => self.param_leaf(index, name, span),
+            Some(Named::Param(index)) if self.given.computed[index].is_none() => {
+                self.param_leaf(index, name, span)
+            }
             Some(Named::Opaque) => Ok(None),
-            Some(Named::Node(_)) => match self.result(name) {
+            Some(_) => match self.result(name) {
                 Ok(found) => self.result_leaf(found, name, span, slot),
                 Err(NotFound::Known) => Ok(None),
                 Err(NotFound::Error(missing)) => Err(ExprError::new(span, missing.message)
@@ -172,36 +175,39 @@ impl Scope<'_> {
         span: Range<usize>,
         slot: impl FnOnce(ResultUse) -> u32,
     ) -> ResolvedName {
-        let ty = match found.spec.kind {
+        let ty = match found.kind {
             Kind::Bool => Type::Bool,
             Kind::Number | Kind::Integer => Type::Number,
             other => {
                 let label = other.label();
                 let message = format!("`{}` gives {label}; expressions take numbers", shown(name));
-                let node = &self.nodes[found.result.node];
-                return Err(ExprError::new(span, message)
+                let error = ExprError::new(span, message)
                     .code("wrong_kind")
                     .remark(other.noun())
-                    .help(self.scalar_results(found))
-                    .elsewhere(node.span.clone(), "defined here"));
+                    .help(self.scalar_results(name));
+                return Err(match self.definition(name) {
+                    Some((_, place)) => error.elsewhere(place, "defined here"),
+                    None => error,
+                });
             }
         };
-        let scale = self.units.to_si(found.spec.quantity);
-        let slot = slot(ResultUse {
-            result: found.result,
-            scale,
-        });
+        let Some(result) = found.result() else {
+            return Ok(None);
+        };
+        let scale = self.units.to_si(found.quantity);
+        let slot = slot(ResultUse { result, scale });
         Ok(Some(Leaf::Variable { slot, ty, scale }))
     }
 
     /// Which results of the same node an expression could use.
-    fn scalar_results(&self, found: Found) -> String {
-        let node = shown(&self.nodes[found.result.node].name.value);
-        let outputs = self.specs[found.result.node].map_or(&[][..], |spec| spec.outputs);
-        let names: Vec<String> = outputs
+    fn scalar_results(&self, reference: &str) -> String {
+        let node = shown(reference.split('.').next().unwrap_or(reference));
+        let index = self.definition(reference).and_then(|(index, _)| index);
+        let results = index.map_or_else(Vec::new, |index| self.results_of(index));
+        let names: Vec<String> = results
             .iter()
-            .filter(|output| output.kind.is_scalar())
-            .map(|output| format!("{node}.{}", output.name))
+            .filter(|(_, kind)| kind.is_scalar())
+            .map(|(name, _)| format!("{node}.{name}"))
             .collect();
         if names.is_empty() {
             return format!("`{node}` has no result that is a number");
@@ -258,6 +264,7 @@ impl Scope<'_> {
         let (word, place) = match named {
             Named::Param(index) => ("parameter", Some(self.params[index].name.span.clone())),
             Named::Node(index) => ("node", Some(self.nodes[index].name.span.clone())),
+            Named::Input(index) => ("input", Some(self.document.inputs[index].name.span.clone())),
             Named::Opaque => ("input", None),
         };
         let message =

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::scope::Scope;
+use super::scope::{Meaning, Scope};
 use crate::document::{Item, Problems, Shape};
 use crate::names::{did_you_mean, listing, nearest, quoted, shown};
 use crate::node::{InputSpec, NodeSpec};
@@ -23,7 +23,7 @@ type Given<'a> = Option<&'a Item>;
 /// The inputs of the node at `index`, one per input of its spec. Where the
 /// value is wrong, the input counts as left out, and the problem is reported.
 pub(super) fn check(scope: &Scope<'_>, index: usize, problems: &mut Problems) -> Vec<PlanInput> {
-    let Some(spec) = scope.specs[index] else {
+    let Meaning::Node(spec, _) = scope.meanings[index] else {
         return Vec::new();
     };
     let node = &scope.nodes[index];

@@ -10,7 +10,33 @@ use crate::value::Value;
 impl Checker<'_, '_> {
     /// The text with each `{name}` replaced by the value of that parameter, as
     /// written in the file's units. `{{` and `}}` stand for single braces.
-    pub(super) fn interpolate(&mut self, text: &Text) -> Option<Origin> {
+    ///
+    /// A path is named from the folder of the file it is written in: its own, or
+    /// that of the path parameter it begins with.
+    pub(super) fn interpolate(&mut self, text: &Text, is_path: bool) -> Option<Origin> {
+        let mut value = self.interpolated(text)?;
+        if is_path {
+            value = in_folder(&self.folder_of(text), &value);
+        }
+        Some(Origin::Constant(Value::Text(value.into())))
+    }
+
+    /// The folder that a path in the text is named from.
+    pub(super) fn folder_of(&self, text: &Text) -> String {
+        let first = text
+            .value
+            .strip_prefix('{')
+            .filter(|rest| !rest.starts_with('{'));
+        let first = first.and_then(|rest| rest.split('}').next());
+        let param = match first.and_then(|name| self.scope.find(name.trim())) {
+            Some(Named::Param(index)) => self.scope.params[index].folder.as_deref(),
+            _ => None,
+        };
+        param.unwrap_or(self.scope.folder).to_owned()
+    }
+
+    /// The text with parameters in their places.
+    pub(super) fn interpolated(&mut self, text: &Text) -> Option<String> {
         let value = &text.value;
         let mut result = String::with_capacity(value.len());
         let (mut at, mut sound) = (0, true);
@@ -38,13 +64,22 @@ impl Checker<'_, '_> {
             }
         }
         result.push_str(&value[at..]);
-        sound.then(|| Origin::Constant(Value::Text(result.into())))
+        sound.then_some(result)
     }
 
     fn parameter_text(&mut self, text: &Text, part: std::ops::Range<usize>) -> Option<String> {
         let name = text.value[part.clone()].trim();
         let span = text.part(part);
         let index = match self.scope.find(name) {
+            Some(Named::Param(index)) if self.scope.given.computed[index].is_some() => {
+                let message = format!(
+                    "`{}` is given by a node; a text takes what is known before",
+                    shown(name)
+                );
+                let help = "give the input a value that depends on parameters only";
+                self.report("not_known_yet", &span, message, "only known later", help);
+                return None;
+            }
             Some(Named::Param(index)) => index,
             Some(Named::Opaque) => return None,
             found => {
@@ -69,4 +104,13 @@ impl Checker<'_, '_> {
             _ => None,
         }
     }
+}
+
+/// A path written in a file of that folder, from the main graph's folder.
+pub(super) fn in_folder(folder: &str, path: &str) -> String {
+    let has_drive = path.as_bytes().get(1) == Some(&b':');
+    if path.is_empty() || path.starts_with(['/', '\\']) || has_drive {
+        return path.to_owned();
+    }
+    format!("{folder}{path}")
 }

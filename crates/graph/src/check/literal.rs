@@ -23,7 +23,7 @@ impl Checker<'_, '_> {
     ) -> Option<Origin> {
         let text = item.text(self.scope.text);
         match (kind, &item.shape, text) {
-            (Kind::Text | Kind::Path, _, Some(text)) => self.interpolate(&text),
+            (Kind::Text | Kind::Path, _, Some(text)) => self.interpolate(&text, kind == Kind::Path),
             (Kind::Choice, _, Some(text)) => self.choice_parameter(input, &text),
             (Kind::Choice, Shape::Name, _) => self.choice(input, item),
             (Kind::Formula, _, Some(text)) => self.formula(input, &text),
@@ -87,7 +87,12 @@ impl Checker<'_, '_> {
         }
     }
 
-    fn vector(&mut self, input: &'static InputSpec, item: &Item, items: &[Item]) -> Option<Origin> {
+    pub(super) fn vector(
+        &mut self,
+        input: &'static InputSpec,
+        item: &Item,
+        items: &[Item],
+    ) -> Option<Origin> {
         if items.len() != 3 {
             let message = format!("`{}` takes three numbers, not {}", input.name, items.len());
             let help = "write `(x, y, z)`";

@@ -4,7 +4,10 @@
 //! value in SI units, every edge is checked for its kind, and all mistakes of
 //! the file are found in one go.
 
+mod arguments;
+mod axis;
 mod choice;
+mod expand;
 mod expressions;
 mod inputs;
 mod interpolate;
@@ -18,17 +21,19 @@ mod scope;
 #[cfg(test)]
 mod tests;
 
+use std::rc::Rc;
 use std::sync::Arc;
 
 pub use overrides::WRONG_SETTING;
 
 use crate::diagnostic::Diagnostic;
-use crate::document::{self, Document, Problems};
-use crate::names::quoted;
+use crate::document::{self, DeclaredInput, DeclaredKind, Document, Problems};
+use crate::names::{quoted, shown};
 use crate::node::NodeSpec;
-use crate::plan::{Origin, Plan, PlanInput, PlanNode, PlanOutput, PlanParameter};
+use crate::plan::{Origin, Plan, PlanNode, PlanOutput, PlanParameter};
 use crate::world::{MemoryWorld, World};
-use scope::Scope;
+use expand::{Call, ExpandedNode, Expander};
+use scope::Givings;
 
 /// What the caller of [`load`] may change about a graph.
 #[derive(Debug, Clone, Default)]
@@ -73,111 +78,147 @@ pub fn load(
 }
 
 /// [`load`] for graphs that include others, which are read from `world`.
+///
+/// Cost: besides, what is included once for each time it is included.
 pub fn load_with(
     name: &str,
     bytes: &[u8],
     registry: &'static [NodeSpec],
     options: &LoadOptions,
-    _world: &dyn World,
+    world: &dyn World,
 ) -> Loaded {
-    Loaded {
-        plan: plan(name, bytes, registry, options),
-        included: Vec::new(),
+    let (mut document, mut problems) = match document::read(name, bytes) {
+        Ok(read) => read,
+        Err(problems) => {
+            return Loaded {
+                plan: Err(problems),
+                included: Vec::new(),
+            };
+        }
+    };
+    overrides::apply(&mut document.params, &options.set, &mut problems);
+    check_runnable(&document, &mut problems);
+    let mut expander = Expander::new(name, registry, world);
+    let given = Givings::defaults(&document);
+    let call = expander.main(name, Rc::new(document), given);
+    let outputs = expander.expand(&call, |expander, scope, found| {
+        let outputs = outputs::check(scope, &call.document, found, &mut |name, target, span| {
+            expander.single(&call, name, target, span)
+        });
+        outputs::check_results(scope, &call.document.results, found);
+        outputs
+    });
+    for problem in problems.into_sorted() {
+        expander.report(problem);
     }
+    finish(expander, &call, outputs)
+}
+
+/// The plan, if nothing is wrong and no node needs itself.
+fn finish(mut expander: Expander<'_>, call: &Call, mut outputs: Vec<PlanOutput>) -> Loaded {
+    let places = expander.sort_nodes();
+    let order = order::check(&mut expander);
+    let included = std::mem::take(&mut expander.included);
+    let plan = match order {
+        Some(order) if expander.is_sound() => {
+            let order_of = inverse(&order);
+            for output in &mut outputs {
+                output.result.node = order_of[places[output.result.node]];
+            }
+            let nodes = plan_nodes(expander.nodes, &order, &order_of);
+            Ok(plan(call, included.clone(), nodes, outputs))
+        }
+        _ => Err(expander.into_problems()),
+    };
+    Loaded { plan, included }
+}
+
+/// For each node its place in the order.
+fn inverse(order: &[usize]) -> Vec<usize> {
+    let mut places = vec![0; order.len()];
+    for (place, &node) in order.iter().enumerate() {
+        places[node] = place;
+    }
+    places
 }
 
 fn plan(
-    name: &str,
-    bytes: &[u8],
-    registry: &'static [NodeSpec],
-    options: &LoadOptions,
-) -> Result<Plan, Vec<Diagnostic>> {
-    let (mut document, mut problems) = document::read(name, bytes)?;
-    overrides::apply(&mut document.params, &options.set, &mut problems);
-    check_runnable(&document, &mut problems);
-    let scope = Scope::new(&document, registry, &mut problems);
-    let inputs: Vec<Vec<PlanInput>> = (0..document.nodes.len())
-        .map(|index| inputs::check(&scope, index, &mut problems))
-        .collect();
-    let outputs = outputs::check(&scope, &document, &mut problems);
-    outputs::check_results(&scope, &document.results, &mut problems);
-    let order = order::check(&document, &inputs, &mut problems);
-    let specs = scope.specs;
-    match (order, specs.into_iter().collect::<Option<Vec<_>>>()) {
-        (Some(order), Some(specs)) if problems.is_empty() => {
-            Ok(assemble(document, specs, inputs, outputs, &order))
-        }
-        _ => Err(problems.into_sorted()),
+    call: &Call,
+    included: Vec<String>,
+    nodes: Vec<PlanNode>,
+    outputs: Vec<PlanOutput>,
+) -> Plan {
+    let parameters = call.given.params.iter().filter_map(|param| {
+        Some(PlanParameter {
+            name: param.name.value.clone(),
+            value: param.value.clone()?,
+        })
+    });
+    Plan {
+        source: Arc::clone(&call.document.source),
+        included,
+        units: call.document.units,
+        parameters: parameters.collect(),
+        nodes,
+        outputs,
     }
 }
 
 /// A graph that takes something from another graph cannot run by itself.
 fn check_runnable(document: &Document, problems: &mut Problems) {
-    let Some(first) = document.required.first() else {
+    let is_missing = |input: &&DeclaredInput| match input.kind {
+        // It may have been given a value from outside.
+        DeclaredKind::Param(param) => input.required && document.params[param].value.is_none(),
+        _ => input.required,
+    };
+    let missing: Vec<&DeclaredInput> = document.inputs.iter().filter(is_missing).collect();
+    let Some(first) = missing.first() else {
         return;
     };
-    let names = quoted(
-        document.required.iter().map(|input| input.value.as_str()),
-        8,
-    );
+    let names = quoted(missing.iter().map(|input| input.name.value.as_str()), 8);
     let message = format!("the graph cannot run by itself: {names} must be given to it");
-    let help = "give each of these inputs a default, or use the graph inside another one";
-    let mut error = problems.error("not_runnable", &first.span, message, "has no default");
-    for input in &document.required[1..] {
-        error = error.with_label(input.span.clone(), "has no default");
+    let path = document
+        .source
+        .name()
+        .rsplit(['/', '\\'])
+        .next()
+        .unwrap_or_default();
+    let help = format!(
+        "run a graph that includes it: `Subgraph(path: \"{}\", with: {{\"{}\": ...}})`",
+        shown(path),
+        shown(&first.name.value)
+    );
+    let mut error = problems.error("not_runnable", &first.name.span, message, "has no default");
+    for input in &missing[1..] {
+        error = error.with_label(input.name.span.clone(), "has no default");
     }
     problems.add(error.with_help(help));
 }
 
-/// Puts the checked parts together, nodes in the given order.
-fn assemble(
-    document: Document,
-    specs: Vec<&'static NodeSpec>,
-    inputs: Vec<Vec<PlanInput>>,
-    outputs: Vec<PlanOutput>,
-    order: &[usize],
-) -> Plan {
-    let mut places = vec![0; order.len()];
-    for (place, &node) in order.iter().enumerate() {
-        places[node] = place;
-    }
-    let entries = document.nodes.into_iter().zip(specs).zip(inputs);
-    let mut nodes: Vec<(usize, PlanNode)> = entries
-        .enumerate()
-        .map(|(index, ((entry, spec), mut inputs))| {
+/// The nodes of the plan in the given order.
+fn plan_nodes(nodes: Vec<ExpandedNode>, order: &[usize], places: &[usize]) -> Vec<PlanNode> {
+    let mut nodes: Vec<Option<PlanNode>> = nodes
+        .into_iter()
+        .map(|node| {
+            let mut inputs = node.inputs;
             for input in &mut inputs {
-                renumber(&mut input.origin, &places);
+                renumber(&mut input.origin, places);
             }
-            (
-                places[index],
-                PlanNode {
-                    name: entry.name.value,
-                    spec,
-                    inputs,
-                    span: entry.span,
-                },
-            )
+            Some(PlanNode {
+                name: node.name,
+                spec: node.spec,
+                inputs,
+                span: node.span,
+                source: node.source,
+                units: node.units,
+                included: node.included,
+            })
         })
         .collect();
-    nodes.sort_by_key(|(place, _)| *place);
-    let parameters = document.params.into_iter().filter_map(|param| {
-        Some(PlanParameter {
-            name: param.name.value,
-            value: param.value?,
-        })
-    });
-    let mut outputs = outputs;
-    for output in &mut outputs {
-        output.result.node = places[output.result.node];
-    }
-    Plan {
-        source: Arc::clone(&document.source),
-        included: Vec::new(),
-        units: document.units,
-        parameters: parameters.collect(),
-        nodes: nodes.into_iter().map(|(_, node)| node).collect(),
-        outputs,
-    }
+    order
+        .iter()
+        .filter_map(|&node| nodes[node].take())
+        .collect()
 }
 
 fn renumber(origin: &mut Origin, places: &[usize]) {

@@ -3,28 +3,29 @@
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, VecDeque};
 use std::ops::Range;
+use std::sync::Arc;
 
 use petgraph::algo::kosaraju_scc;
 use petgraph::graph::{DiGraph, NodeIndex};
 
-use crate::document::{Document, Item, Problems, Shape};
+use super::expand::{ExpandedNode, Expander};
+use crate::diagnostic::{Diagnostic, Label, Place};
+use crate::document::{Item, Shape};
 use crate::names::shown;
 use crate::plan::PlanInput;
 
 /// All nodes, each after those it depends on, else in file order; `None` after
 /// reporting every cycle. Cost: O((nodes + edges) · log nodes).
-pub(super) fn check(
-    document: &Document,
-    inputs: &[Vec<PlanInput>],
-    problems: &mut Problems,
-) -> Option<Vec<usize>> {
-    let needs: Vec<Vec<usize>> = inputs.iter().map(|inputs| needed(inputs)).collect();
+pub(super) fn check(expander: &mut Expander<'_>) -> Option<Vec<usize>> {
+    let nodes = expander.nodes.iter();
+    let needs: Vec<Vec<usize>> = nodes.map(|node| needed(&node.inputs)).collect();
     let order = sort(&needs);
     if order.len() == needs.len() {
         return Some(order);
     }
     for cycle in cycles(&needs, &order) {
-        report(document, inputs, &cycle, problems);
+        let problem = problem(&expander.nodes, &cycle);
+        expander.report(problem);
     }
     None
 }
@@ -40,7 +41,7 @@ fn needed(inputs: &[PlanInput]) -> Vec<usize> {
 
 /// Kahn's algorithm with a heap: of all nodes that are ready, the first of the
 /// file. Nodes on or behind a cycle are missing from the result.
-fn sort(needs: &[Vec<usize>]) -> Vec<usize> {
+pub(super) fn sort(needs: &[Vec<usize>]) -> Vec<usize> {
     let mut users = vec![Vec::new(); needs.len()];
     let mut waiting: Vec<usize> = needs.iter().map(Vec::len).collect();
     for (node, needs) in needs.iter().enumerate() {
@@ -65,7 +66,7 @@ fn sort(needs: &[Vec<usize>]) -> Vec<usize> {
 
 /// One cycle, as short as can be, through the first node of each knot: each
 /// node needs the next, the last needs the first.
-fn cycles(needs: &[Vec<usize>], ordered: &[usize]) -> Vec<Vec<usize>> {
+pub(super) fn cycles(needs: &[Vec<usize>], ordered: &[usize]) -> Vec<Vec<usize>> {
     let mut stuck = vec![true; needs.len()];
     ordered.iter().for_each(|&node| stuck[node] = false);
     let mut graph = DiGraph::<(), ()>::with_capacity(needs.len(), 0);
@@ -119,15 +120,13 @@ fn shortest_cycle(needs: &[Vec<usize>], knot: &[usize]) -> Option<Vec<usize>> {
 /// More places than these make a diagnostic unreadable; the message has all.
 const MAX_LABELS: usize = 8;
 
-fn report(
-    document: &Document,
-    inputs: &[Vec<PlanInput>],
-    cycle: &[usize],
-    problems: &mut Problems,
-) {
-    let name = |node: usize| format!("`{}`", shown(&document.nodes[node].name.value));
+fn problem(nodes: &[ExpandedNode], cycle: &[usize]) -> Diagnostic {
+    let name = |node: usize| format!("`{}`", shown(&nodes[node].name));
     let next = |place: usize| cycle[(place + 1) % cycle.len()];
-    let place = |place: usize| edge(document, inputs, cycle[place], next(place));
+    let label = |place: usize| Label {
+        span: edge(&nodes[cycle[place]], &nodes[next(place)], next(place)),
+        message: format!("{} takes {}", name(cycle[place]), name(next(place))),
+    };
     let (message, help) = match cycle {
         [node] => (
             format!("{} takes its own result", name(*node)),
@@ -143,38 +142,43 @@ fn report(
             (message, "break the cycle at one of these inputs")
         }
     };
-    let remark = format!("{} takes {}", name(cycle[0]), name(next(0)));
-    let mut error = problems.error("cycle", &place(0), message, remark);
+    let first = &nodes[cycle[0]];
+    let place = label(0);
+    let mut error = Diagnostic::error("cycle", &first.source, place.span, message, place.message);
     for (index, &user) in cycle.iter().enumerate().take(MAX_LABELS).skip(1) {
-        let remark = format!("{} takes {}", name(user), name(next(index)));
-        error = error.with_label(place(index), remark);
+        let (label, source) = (label(index), &nodes[user].source);
+        if Arc::ptr_eq(source, &first.source) {
+            error.labels.push(label);
+        } else {
+            let source = Arc::clone(source);
+            error.elsewhere.push(Place { source, label });
+        }
     }
-    problems.add(
-        error
-            .with_help(help)
-            .with_node(&document.nodes[cycle[0]].name.value),
-    );
+    error.with_help(help).with_node(&first.name)
 }
 
-/// Where `user` refers to a result of `used`.
-fn edge(document: &Document, inputs: &[Vec<PlanInput>], user: usize, used: usize) -> Range<usize> {
+/// Where `user` refers to a result of `used`, which is the node at `place`.
+fn edge(user: &ExpandedNode, used: &ExpandedNode, place: usize) -> Range<usize> {
     let uses = |input: &&PlanInput| {
         input
             .origin
             .results()
             .iter()
-            .any(|result| result.node == used)
+            .any(|result| result.node == place)
     };
-    let node = &document.nodes[user];
-    let span = inputs[user]
+    let span = user
+        .inputs
         .iter()
         .find(uses)
         .and_then(|input| input.span.clone());
-    let Some(span) = span else {
-        return node.name.span.clone();
+    let (Some(span), Some((document, index))) = (span, &user.entry) else {
+        return user.span.clone();
     };
-    let field = node.fields.iter().find(|field| field.value.span == span);
-    let name = &document.nodes[used].name.value;
+    let field = document.nodes[*index]
+        .fields
+        .iter()
+        .find(|field| field.value.span == span);
+    let name = used.name.rsplit('/').next().unwrap_or(&used.name);
     let text = document.source.text();
     field
         .and_then(|field| mention(text, &field.value, name))

@@ -3,19 +3,25 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use super::reference::resolve;
-use super::scope::Scope;
+use super::reference::{Found, resolve};
+use super::scope::{FormResult, Scope};
 use crate::document::{Document, Link, Problems};
 use crate::names::{is_snake_case, shown};
-use crate::plan::PlanOutput;
+use crate::plan::{PlanOutput, ResultRef};
 
-/// The outputs in file order; those with problems are left out.
+/// Makes one result of what a reference leads to; it is given the reference and
+/// its place.
+type Single<'s> = dyn FnMut(&str, &Found, &Range<usize>) -> Option<ResultRef> + 's;
+
+/// The outputs in file order; those with problems are left out. `single` makes
+/// one result of a list of results.
 pub(super) fn check(
     scope: &Scope<'_>,
     document: &Document,
     problems: &mut Problems,
+    single: &mut Single<'_>,
 ) -> Vec<PlanOutput> {
-    let is_part = !document.required.is_empty();
+    let is_part = document.inputs.iter().any(|input| input.required);
     if document.outputs.is_empty() && !document.outputs_damaged && !is_part {
         report_nothing(document, problems);
     }
@@ -24,11 +30,14 @@ pub(super) fn check(
     for link in &document.outputs {
         let path_is_sound = check_path(link, &mut paths, problems);
         match resolve(scope, &link.target, problems) {
-            Ok(found) if path_is_sound => outputs.push(PlanOutput {
-                path: link.name.value.clone(),
-                result: found.result,
-                span: link.name.span.clone(),
-            }),
+            Ok(found) if path_is_sound => {
+                let result = single(&link.target.value, &found, &link.target.span);
+                outputs.extend(result.map(|result| PlanOutput {
+                    path: link.name.value.clone(),
+                    result,
+                    span: link.name.span.clone(),
+                }));
+            }
             Ok(_) | Err(None) => {}
             Err(Some(error)) => problems.add(*error),
         }
@@ -139,7 +148,12 @@ fn tidy(path: &str) -> Result<String, (&'static str, &'static str)> {
 }
 
 /// What the graph gives to another graph: names once, references that exist.
-pub(super) fn check_results(scope: &Scope<'_>, results: &[Link], problems: &mut Problems) {
+pub(super) fn check_results(
+    scope: &Scope<'_>,
+    results: &[Link],
+    problems: &mut Problems,
+) -> Vec<FormResult> {
+    let mut given = Vec::with_capacity(results.len());
     let mut names: BTreeMap<&str, Range<usize>> = BTreeMap::new();
     for link in results {
         let (name, span) = (&link.name.value, &link.name.span);
@@ -157,10 +171,14 @@ pub(super) fn check_results(scope: &Scope<'_>, results: &[Link], problems: &mut 
                     .with_help("rename one"),
             );
         }
-        if let Err(Some(error)) = resolve(scope, &link.target, problems) {
-            problems.add(*error);
-        }
+        let found = resolve(scope, &link.target, problems);
+        let found = found.map_err(|error| problems.extend(error.map(|error| *error)));
+        given.push(FormResult {
+            name: name.clone(),
+            found: found.ok(),
+        });
     }
+    given
 }
 
 #[cfg(test)]

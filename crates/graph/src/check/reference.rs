@@ -1,19 +1,62 @@
 //! References to results of nodes: `"node"` or `"node.result"`.
 
+use std::ops::Range;
+use std::rc::Rc;
+
 use super::inputs::{Checker, subject};
-use super::scope::{Named, Scope};
+use super::scope::{FormResult, Meaning, Named, Scope};
 use crate::diagnostic::Diagnostic;
 use crate::document::{Problems, Text};
 use crate::names::{did_you_mean, quoted, shown};
 use crate::node::{InputSpec, OutputSpec};
 use crate::plan::{Origin, ResultRef};
 use crate::value::Kind;
+use tessgraph_geometry::Quantity;
 
-/// A result that a reference names.
-#[derive(Debug, Clone, Copy)]
+/// What a reference gives.
+#[derive(Debug, Clone)]
 pub(super) struct Found {
-    pub(super) result: ResultRef,
-    pub(super) spec: &'static OutputSpec,
+    pub(super) kind: Kind,
+    pub(super) quantity: Quantity,
+    pub(super) given: Given,
+}
+
+/// Where a reference leads.
+#[derive(Debug, Clone)]
+pub(super) enum Given {
+    /// To one result of one node.
+    One(ResultRef),
+    /// To results of several nodes, as a list.
+    Many(Rc<[ResultRef]>),
+}
+
+impl Found {
+    /// One result of the node at `node` in the plan.
+    pub(super) fn one(node: usize, result: usize, spec: &OutputSpec) -> Self {
+        Self {
+            kind: spec.kind,
+            quantity: spec.quantity,
+            given: Given::One(ResultRef { node, result }),
+        }
+    }
+
+    /// The result, if it is one.
+    pub(super) fn result(&self) -> Option<ResultRef> {
+        match self.given {
+            Given::One(result) => Some(result),
+            Given::Many(_) => None,
+        }
+    }
+
+    /// The origin of an input that takes it.
+    pub(super) fn origin(&self) -> Origin {
+        match &self.given {
+            Given::One(result) => Origin::Result(*result),
+            Given::Many(results) => {
+                Origin::List(results.iter().copied().map(Origin::Result).collect())
+            }
+        }
+    }
 }
 
 /// Why a reference names no result.
@@ -42,6 +85,12 @@ impl Scope<'_> {
         match self.find(node) {
             Some(Named::Node(index)) => self.result_of(index, node, result),
             Some(Named::Opaque) => Err(NotFound::Known),
+            Some(Named::Input(index)) => {
+                self.plain(self.given.values[index].as_ref(), node, result)
+            }
+            Some(Named::Param(index)) if self.given.computed[index].is_some() => {
+                self.plain(self.given.computed[index].as_ref(), node, result)
+            }
             Some(Named::Param(_)) => Err(NotFound::Error(Missing {
                 code: "wrong_kind",
                 message: format!("`{}` is a parameter, not a node", shown(node)),
@@ -55,35 +104,87 @@ impl Scope<'_> {
         }
     }
 
+    /// What an input is given, which has no results by name.
+    fn plain(
+        &self,
+        found: Option<&Found>,
+        name: &str,
+        result: Option<&str>,
+    ) -> Result<Found, NotFound> {
+        if let Some(result) = result {
+            return Err(NotFound::Error(Missing {
+                code: "unknown_result",
+                message: format!(
+                    "`{}` is an input and has no result `{}`",
+                    shown(name),
+                    shown(result)
+                ),
+                help: format!("write `{}`", shown(name)),
+            }));
+        }
+        found.cloned().ok_or(NotFound::Known)
+    }
+
     fn result_of(&self, index: usize, node: &str, result: Option<&str>) -> Result<Found, NotFound> {
-        let Some(spec) = self.specs[index] else {
-            return Err(NotFound::Known);
-        };
-        let place = match result {
-            None => 0,
-            Some(name) => {
+        let found = match (&self.meanings[index], result) {
+            (Meaning::Unknown, _) => return Err(NotFound::Known),
+            (Meaning::Node(spec, node), None) => spec
+                .outputs
+                .first()
+                .map(|spec| Some(Found::one(*node, 0, spec))),
+            (Meaning::Node(spec, node), Some(name)) => {
                 let place = spec.outputs.iter().position(|output| output.name == name);
-                let Some(place) = place else {
-                    return Err(NotFound::Error(no_result(node, name, spec.outputs)));
-                };
-                place
+                place.map(|place| Some(Found::one(*node, place, &spec.outputs[place])))
+            }
+            (Meaning::Form(results), None) => results.first().map(|result| result.found.clone()),
+            (Meaning::Form(results), Some(name)) => {
+                let result = results.iter().find(|result| result.name == name);
+                result.map(|result| result.found.clone())
             }
         };
-        match spec.outputs.get(place) {
-            Some(spec) => Ok(Found {
-                result: ResultRef {
-                    node: index,
-                    result: place,
-                },
-                spec,
-            }),
-            None => Err(NotFound::Known),
+        match (found, result) {
+            (Some(Some(found)), _) => Ok(found),
+            (Some(None), _) | (None, None) => Err(NotFound::Known),
+            (None, Some(name)) => {
+                let results = self.results_of(index);
+                let names: Vec<&str> = results.iter().map(|(name, _)| name.as_str()).collect();
+                Err(NotFound::Error(no_result(node, name, &names)))
+            }
+        }
+    }
+
+    /// The results of an entry of `nodes`, with their kinds.
+    pub(super) fn results_of(&self, index: usize) -> Vec<(String, Kind)> {
+        match &self.meanings[index] {
+            Meaning::Unknown => Vec::new(),
+            Meaning::Node(spec, _) => {
+                let outputs = spec.outputs.iter();
+                outputs
+                    .map(|output| (output.name.to_owned(), output.kind))
+                    .collect()
+            }
+            Meaning::Form(results) => {
+                let known =
+                    |result: &FormResult| Some((result.name.clone(), result.found.as_ref()?.kind));
+                results.iter().filter_map(known).collect()
+            }
+        }
+    }
+
+    /// The node that a reference names, and where it is defined.
+    pub(super) fn definition(&self, reference: &str) -> Option<(Option<usize>, Range<usize>)> {
+        let head = reference.split('.').next().unwrap_or(reference);
+        match self.find(head)? {
+            Named::Node(index) => Some((Some(index), self.nodes[index].span.clone())),
+            Named::Input(index) => Some((None, self.document.inputs[index].span.clone())),
+            Named::Param(index) => Some((None, self.params[index].span.clone())),
+            Named::Opaque => None,
         }
     }
 }
 
-fn no_result(node: &str, name: &str, outputs: &[OutputSpec]) -> Missing {
-    let names = outputs.iter().map(|output| output.name);
+fn no_result(node: &str, name: &str, names: &[&str]) -> Missing {
+    let names = names.iter().copied();
     let all = format!("its results are {}", quoted(names.clone(), 100));
     Missing {
         code: "unknown_result",
@@ -143,10 +244,16 @@ impl Checker<'_, '_> {
         kind: Kind,
         text: &Text,
     ) -> Option<Origin> {
+        let found = self.found(&subject(input, kind), kind, text)?;
+        Some(found.origin())
+    }
+
+    /// What a reference leads to where `subject` takes a `kind`.
+    pub(super) fn found(&mut self, subject: &str, kind: Kind, text: &Text) -> Option<Found> {
         match resolve(self.scope, text, self.problems) {
-            Ok(found) if kind.accepts(found.spec.kind) => Some(Origin::Result(found.result)),
+            Ok(found) if kind.accepts(found.kind) => Some(found),
             Ok(found) => {
-                self.wrong_result(input, kind, text, found);
+                self.wrong_result(subject, kind, text, &found);
                 None
             }
             Err(error) => {
@@ -158,49 +265,53 @@ impl Checker<'_, '_> {
         }
     }
 
-    fn wrong_result(&mut self, input: &InputSpec, kind: Kind, text: &Text, found: Found) {
-        let (wanted, given) = (kind.label(), found.spec.kind);
+    fn wrong_result(&mut self, subject: &str, kind: Kind, text: &Text, found: &Found) {
+        let (wanted, given) = (kind.label(), found.kind);
         let name = shown(&text.value);
-        let subject = subject(input, kind);
         let message = format!(
             "{subject} takes {wanted}, but `{name}` gives {}",
             given.label()
         );
-        let node = &self.scope.nodes[found.result.node];
-        let error = self
+        let mut error = self
             .problems
             .error("wrong_kind", &text.span, message, given.noun());
-        let help = self.other_result(kind, found);
-        let error = error
-            .with_label(node.span.clone(), "defined here")
-            .with_help(help);
-        self.problems.add(error.with_node(self.node));
+        let help = self.other_result(kind, found, &text.value);
+        if let Some((_, place)) = self.scope.definition(&text.value) {
+            error = error.with_label(place, "defined here");
+        }
+        self.problems
+            .add(error.with_help(help).with_node(self.node));
     }
 
     /// What could be connected instead.
-    fn other_result(&self, kind: Kind, found: Found) -> String {
+    fn other_result(&self, kind: Kind, found: &Found, reference: &str) -> String {
+        let name = shown(reference.split('.').next().unwrap_or(reference));
         if let Kind::List(part) = kind
-            && part.accepts(found.spec.kind)
+            && part.accepts(found.kind)
         {
-            let name = shown(&self.scope.nodes[found.result.node].name.value);
             return format!("a list is written in square brackets: `[\"{name}\"]`");
         }
-        let name = &self.scope.nodes[found.result.node].name.value;
-        let outputs = self.scope.specs[found.result.node].map_or(&[][..], |spec| spec.outputs);
-        if let Some(output) = outputs.iter().find(|output| kind.accepts(output.kind)) {
-            return format!("`{}.{}` gives {}", shown(name), output.name, kind.label());
+        let index = self
+            .scope
+            .definition(reference)
+            .and_then(|(index, _)| index);
+        let results = index.map_or_else(Vec::new, |index| self.scope.results_of(index));
+        if let Some((result, _)) = results.iter().find(|(_, other)| kind.accepts(*other)) {
+            return format!("`{name}.{result}` gives {}", kind.label());
         }
         if !self.scope.may_search() {
             return format!("connect a node that gives {}", kind.label());
         }
-        let nodes = self.scope.nodes.iter().zip(&self.scope.specs);
-        let fitting = nodes.filter(|(node, spec)| {
-            node.name.value != self.node
-                && spec
-                    .and_then(|spec| spec.outputs.first())
-                    .is_some_and(|o| kind.accepts(o.kind))
+        let fits = |index: usize| match &self.scope.meanings[index] {
+            Meaning::Node(spec, _) => spec.outputs.first().map(|output| output.kind),
+            Meaning::Form(results) => results.first()?.found.as_ref().map(|found| found.kind),
+            Meaning::Unknown => None,
+        };
+        let nodes = self.scope.nodes.iter().enumerate();
+        let fitting = nodes.filter(|(index, node)| {
+            node.name.value != self.node && fits(*index).is_some_and(|other| kind.accepts(other))
         });
-        let names = quoted(fitting.map(|(node, _)| node.name.value.as_str()), 8);
+        let names = quoted(fitting.map(|(_, node)| node.name.value.as_str()), 8);
         if names.is_empty() {
             format!("add a node that gives {}", kind.label())
         } else {

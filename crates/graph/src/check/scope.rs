@@ -4,8 +4,10 @@ use std::cell::Cell;
 use std::collections::HashMap;
 use std::ops::Range;
 
-use crate::document::{Document, NodeEntry, Parameter, Problems, Spanned};
+use super::reference::Found;
+use crate::document::{DeclaredKind, Document, NodeEntry, Parameter, Problems, Spanned};
 use crate::expr::is_reserved;
+use crate::forms::FORMS;
 use crate::names::{did_you_mean, is_snake_case, quoted, shown, to_snake_case};
 use crate::node::NodeSpec;
 use crate::units::Units;
@@ -15,21 +17,68 @@ use crate::units::Units;
 pub(super) enum Named {
     /// A parameter, by its place in the document.
     Param(usize),
-    /// A node, by its place in the document.
+    /// A node or a form, by its place in the document.
     Node(usize),
-    /// Nothing more can be said: an input that another graph gives, or a name
-    /// that is reported to mean two things.
+    /// An input that another graph gives, by its place in the document.
+    Input(usize),
+    /// Nothing more can be said: the name is reported to mean two things.
     Opaque,
+}
+
+/// What an entry of `nodes` is.
+#[derive(Debug, Clone)]
+pub(super) enum Meaning {
+    /// A node of the registry, and its place in the plan.
+    Node(&'static NodeSpec, usize),
+    /// A form of the language, with its results.
+    Form(Vec<FormResult>),
+    /// Nothing is known: its kind is unknown, or the form is wrong or not yet
+    /// dealt with.
+    Unknown,
+}
+
+/// A result of a form, under its name.
+#[derive(Debug, Clone)]
+pub(super) struct FormResult {
+    pub(super) name: String,
+    /// `None` if it is wrong, as reported.
+    pub(super) found: Option<Found>,
+}
+
+/// What a graph is given by whoever runs or includes it.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Givings {
+    /// The parameters with their values.
+    pub(super) params: Vec<Parameter>,
+    /// For each parameter the result that gives it, if one does.
+    pub(super) computed: Vec<Option<Found>>,
+    /// For each input what it is given, if it is no parameter.
+    pub(super) values: Vec<Option<Found>>,
+}
+
+impl Givings {
+    /// Parameters with their defaults, and nothing else.
+    pub(super) fn defaults(document: &Document) -> Self {
+        Self {
+            params: document.params.clone(),
+            computed: vec![None; document.params.len()],
+            values: vec![None; document.inputs.len()],
+        }
+    }
 }
 
 /// Everything that names in a graph can refer to.
 pub(super) struct Scope<'a> {
+    pub(super) document: &'a Document,
     pub(super) text: &'a str,
     pub(super) units: Units,
+    /// The file's folder from the main graph's, with a slash at its end.
+    pub(super) folder: &'a str,
+    pub(super) given: &'a Givings,
     pub(super) params: &'a [Parameter],
     pub(super) nodes: &'a [NodeEntry],
-    /// The spec of each node; `None` where its kind is unknown, as reported.
-    pub(super) specs: Vec<Option<&'static NodeSpec>>,
+    /// What each node is.
+    pub(super) meanings: Vec<Meaning>,
     names: HashMap<&'a str, Named>,
     /// How many names may still be compared for suggestions.
     budget: Cell<usize>,
@@ -40,23 +89,22 @@ pub(super) struct Scope<'a> {
 const COMPARISONS: usize = 2_000_000;
 
 impl<'a> Scope<'a> {
+    /// The names of a document. What its nodes are is still to be said.
     pub(super) fn new(
         document: &'a Document,
-        registry: &'static [NodeSpec],
+        given: &'a Givings,
+        folder: &'a str,
         problems: &mut Problems,
     ) -> Self {
-        let kinds = Kinds::new(registry);
-        let specs = document
-            .nodes
-            .iter()
-            .map(|node| kinds.find(node, problems))
-            .collect();
         Self {
+            document,
             text: document.source.text(),
             units: document.units,
-            params: &document.params,
+            folder,
+            given,
+            params: &given.params,
             nodes: &document.nodes,
-            specs,
+            meanings: vec![Meaning::Unknown; document.nodes.len()],
             names: collect_names(document, problems),
             budget: Cell::new(COMPARISONS),
         }
@@ -101,30 +149,37 @@ impl<'a> Scope<'a> {
     }
 }
 
-/// The kinds of node there are. Forms of the language that are no nodes of the
-/// registry belong here as well, when there are any.
-struct Kinds {
+/// The kinds of node there are.
+pub(super) struct Kinds {
     by_name: HashMap<&'static str, &'static NodeSpec>,
     registry: &'static [NodeSpec],
 }
 
 impl Kinds {
-    fn new(registry: &'static [NodeSpec]) -> Self {
+    pub(super) fn new(registry: &'static [NodeSpec]) -> Self {
         Self {
             by_name: registry.iter().map(|spec| (spec.name, spec)).collect(),
             registry,
         }
     }
 
-    fn find(&self, node: &NodeEntry, problems: &mut Problems) -> Option<&'static NodeSpec> {
+    pub(super) fn find(
+        &self,
+        node: &NodeEntry,
+        problems: &mut Problems,
+    ) -> Option<&'static NodeSpec> {
         let kind = &node.kind.value;
         if let Some(spec) = self.by_name.get(kind.as_str()) {
             return Some(spec);
         }
         let message = format!("there is no node `{}`", shown(kind));
         let error = problems.error("unknown_kind", &node.kind.span, message, "not known");
-        let help = did_you_mean(kind, self.registry.iter().map(|spec| spec.name))
-            .unwrap_or_else(|| "`tessgraph nodes` lists all nodes".to_owned());
+        let forms = FORMS.iter().map(|form| form.name);
+        let help = did_you_mean(
+            kind,
+            self.registry.iter().map(|spec| spec.name).chain(forms),
+        )
+        .unwrap_or_else(|| "`tessgraph nodes` lists all nodes".to_owned());
         problems.add(error.with_help(help).with_node(&node.name.value));
         None
     }
@@ -134,7 +189,10 @@ impl Kinds {
 fn collect_names<'a>(document: &'a Document, problems: &mut Problems) -> HashMap<&'a str, Named> {
     let params = document.params.iter().enumerate();
     let params = params.map(|(index, param)| (&param.name, Named::Param(index)));
-    let given = document.required.iter().map(|name| (name, Named::Opaque));
+    let given = document.inputs.iter().enumerate();
+    let given = given
+        .filter(|(_, input)| !matches!(input.kind, DeclaredKind::Param(_)))
+        .map(|(index, input)| (&input.name, Named::Input(index)));
     let nodes = document.nodes.iter().enumerate();
     let nodes = nodes.map(|(index, node)| (&node.name, Named::Node(index)));
     let mut first: HashMap<&str, (Named, Range<usize>)> = HashMap::new();
@@ -159,7 +217,7 @@ impl Named {
         match self {
             Self::Param(_) => "a parameter",
             Self::Node(_) => "a node",
-            Self::Opaque => "an input",
+            Self::Input(_) | Self::Opaque => "an input",
         }
     }
 }

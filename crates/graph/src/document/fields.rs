@@ -7,19 +7,19 @@ use super::raw::{Field, Item, plain};
 use crate::names::{did_you_mean, quoted, shown};
 
 /// The fields of one group, taken out by name.
-pub(super) struct Fields<'a> {
+pub(crate) struct Fields<'a, 'k> {
     source: &'a str,
     fields: &'a [Field],
-    known: &'a [&'a str],
+    known: &'k [&'k str],
 }
 
-impl<'a> Fields<'a> {
+impl<'a, 'k> Fields<'a, 'k> {
     /// Reports fields that are repeated or not among `known`; `owner` says
     /// whose fields they are: "a graph", "a Number parameter".
-    pub(super) fn new(
+    pub(crate) fn new(
         source: &'a str,
         fields: &'a [Field],
-        known: &'a [&'a str],
+        known: &'k [&'k str],
         owner: &str,
         problems: &mut Problems,
     ) -> Self {
@@ -48,7 +48,7 @@ impl<'a> Fields<'a> {
     }
 
     /// The value of the field of that name, the first if it is repeated.
-    pub(super) fn get(&self, name: &str) -> Option<&'a Item> {
+    pub(crate) fn get(&self, name: &str) -> Option<&'a Item> {
         debug_assert!(
             self.known.contains(&name),
             "{name} is not among the known fields"

@@ -20,13 +20,16 @@ mod walk;
 use std::ops::Range;
 use std::sync::Arc;
 
+pub(crate) use fields::Fields;
 pub(crate) use parameter::{ParamKind, Parameter};
 pub(crate) use problems::Problems;
-pub(crate) use raw::{Item, Number, Shape, plain};
+pub(crate) use raw::{Field, Item, Number, Shape, plain};
 pub(crate) use text::Text;
 
 use crate::diagnostic::{Diagnostic, Source};
 use crate::units::Units;
+use crate::value::Kind;
+use tessgraph_geometry::Quantity;
 
 /// The version of the graph file format that this program reads.
 pub const VERSION: i64 = 1;
@@ -47,10 +50,10 @@ pub(crate) struct Spanned<T> {
 pub(crate) struct Document {
     pub(crate) source: Arc<Source>,
     pub(crate) units: Units,
-    /// Parameters, and inputs of the graph that have a default.
+    /// Parameters, then those inputs of the graph that can be parameters.
     pub(crate) params: Vec<Parameter>,
-    /// Inputs of the graph without a default: another graph must give them.
-    pub(crate) required: Vec<Spanned<String>>,
+    /// What the graph takes from another graph.
+    pub(crate) inputs: Vec<DeclaredInput>,
     pub(crate) nodes: Vec<NodeEntry>,
     pub(crate) outputs: Vec<Link>,
     /// Whether outputs are missing because they could not be read.
@@ -61,13 +64,35 @@ pub(crate) struct Document {
     pub(crate) head: Range<usize>,
 }
 
+/// An input of the graph as declared.
+#[derive(Debug)]
+pub(crate) struct DeclaredInput {
+    pub(crate) name: Spanned<String>,
+    pub(crate) kind: DeclaredKind,
+    /// The declaration.
+    pub(crate) span: Range<usize>,
+    /// Whether another graph must give it.
+    pub(crate) required: bool,
+}
+
+/// What an input of the graph takes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum DeclaredKind {
+    /// What a parameter takes: the one at that place in [`Document::params`].
+    Param(usize),
+    /// A value that only a node of another graph can give.
+    Value(Kind, Quantity),
+    /// Nothing sensible, as reported.
+    Unknown,
+}
+
 /// A node as written.
 #[derive(Debug)]
 pub(crate) struct NodeEntry {
     pub(crate) name: Spanned<String>,
     pub(crate) kind: Spanned<String>,
     /// The inputs in order, repeats and unknown names included.
-    pub(crate) fields: Vec<raw::Field>,
+    pub(crate) fields: Vec<Field>,
     /// From the kind to the closing bracket.
     pub(crate) span: Range<usize>,
 }

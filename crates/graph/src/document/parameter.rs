@@ -6,7 +6,7 @@ use super::Spanned;
 use super::raw::Number;
 use crate::expr::Target;
 use crate::names::{alternatives, did_you_mean, shown};
-use crate::value::Value;
+use crate::value::{Kind, Value};
 
 /// The kind of a parameter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -69,15 +69,26 @@ pub(crate) struct Parameter {
     /// The value in the file's units; choices are texts. `None` if the
     /// declaration has no usable default, which was reported.
     pub(crate) value: Option<Value>,
+    /// The folder that a path is named from: of the file it is written in.
+    pub(crate) folder: Option<String>,
     /// The names to choose from.
     pub(crate) choices: Vec<String>,
     /// The range, in the file's units.
-    pub(super) target: Target,
+    pub(crate) target: Target,
     /// The declaration.
     pub(crate) span: Range<usize>,
 }
 
 impl Parameter {
+    /// The kind of a number or condition that a node computes for it.
+    pub(crate) fn value_kind(&self) -> Kind {
+        match self.kind {
+            ParamKind::Bool => Kind::Bool,
+            ParamKind::Integer => Kind::Integer,
+            _ => Kind::Number,
+        }
+    }
+
     /// Checks a number in the file's units, and gives it as the value.
     pub(crate) fn number(&self, number: Number) -> Result<Value, String> {
         match (self.kind, number) {

@@ -15,14 +15,13 @@ use crate::units::Units;
 use crate::value::{Kind, Value};
 
 /// Kinds of graph inputs that only another graph can give.
-const GIVEN: [&str; 7] = [
-    "Mesh",
-    "Directions",
-    "Field",
-    "Vector",
-    "Report",
-    "Table",
-    "Formula",
+const GIVEN: [(&str, Kind); 6] = [
+    ("Mesh", Kind::Mesh),
+    ("Directions", Kind::Directions),
+    ("Field", Kind::Field),
+    ("Vector", Kind::Vector),
+    ("Report", Kind::Report),
+    ("Table", Kind::Table),
 ];
 
 const QUANTITIES: [(&str, Quantity); 5] = [
@@ -50,7 +49,7 @@ pub(super) fn read(
         Some((span, kind_name)) => match KINDS.iter().find(|(other, _)| *other == kind_name) {
             Some((_, kind)) => Some(reader.declared(name, *kind, item, true)),
             None => {
-                reader.unknown_kind(&span, kind_name);
+                reader.unknown_kind(&span, kind_name, &[]);
                 None
             }
         },
@@ -58,16 +57,35 @@ pub(super) fn read(
     }
 }
 
-/// Reads an input of the graph; `None` if another graph must give it.
+/// An input of the graph as read.
+pub(super) enum ReadInput {
+    /// One that can be a parameter, and whether it has a default.
+    Param(Box<Parameter>, bool),
+    /// A value that only another graph can give.
+    Value(Kind, Quantity),
+    /// Nothing sensible, as reported.
+    Unknown,
+}
+
+impl ReadInput {
+    pub(super) fn has_default(&self) -> bool {
+        matches!(self, Self::Param(_, true))
+    }
+}
+
+/// Reads an input of the graph.
 pub(super) fn read_input(
     text: &str,
     name: &Spanned<String>,
     item: &Item,
     units: Units,
     problems: &mut Problems,
-) -> Option<Parameter> {
+) -> ReadInput {
     let Some((span, kind_name)) = declared_kind(text, item) else {
-        return read(text, name, item, units, problems);
+        let bare = read(text, name, item, units, problems);
+        return bare.map_or(ReadInput::Unknown, |param| {
+            ReadInput::Param(Box::new(param), true)
+        });
     };
     let mut reader = Reader {
         text,
@@ -76,12 +94,13 @@ pub(super) fn read_input(
     };
     if let Some((_, kind)) = KINDS.iter().find(|(other, _)| *other == kind_name) {
         let param = reader.declared(name, *kind, item, false);
-        return (param.value.is_some() || has_field(text, item, "default")).then_some(param);
+        return ReadInput::Param(Box::new(param), has_field(text, item, "default"));
     }
-    if !GIVEN.contains(&kind_name) {
-        reader.unknown_kind(&span, kind_name);
+    if let Some((given, kind)) = GIVEN.iter().find(|(other, _)| *other == kind_name) {
+        return ReadInput::Value(*kind, reader.given(given, *kind, item));
     }
-    None
+    reader.unknown_kind(&span, kind_name, &GIVEN);
+    ReadInput::Unknown
 }
 
 /// The kind that a declaration names: `Number` in `Number(default: 1)`.
@@ -117,12 +136,44 @@ impl Reader<'_> {
         self.problems.add(error.with_help(help));
     }
 
-    fn unknown_kind(&mut self, span: &Range<usize>, name: &str) {
+    /// Reports a kind that is none of a parameter's, nor of `given`.
+    fn unknown_kind(&mut self, span: &Range<usize>, name: &str, given: &[(&str, Kind)]) {
         let kinds = KINDS.iter().map(|(name, _)| *name);
+        let kinds = kinds.chain(given.iter().map(|(name, _)| *name));
         let help = did_you_mean(name, kinds.clone())
             .unwrap_or_else(|| format!("it is {}", alternatives(kinds)));
         let message = format!("there is no kind of parameter `{}`", shown(name));
         self.report("unknown_kind", span, message, &help);
+    }
+
+    /// What the numbers of a `Mesh()`, `Field(unit: Length)`, ... measure.
+    fn given(&mut self, name: &str, kind: Kind, item: &Item) -> Quantity {
+        let fields = match &item.shape {
+            Shape::Struct(fields) => fields.fields.as_slice(),
+            _ => &[],
+        };
+        let known: &[&str] = match kind {
+            Kind::Field | Kind::Vector => &["unit", "about"],
+            _ => &["about"],
+        };
+        let owner = format!("a {name} input");
+        let fields = Fields::new(self.text, fields, known, &owner, self.problems);
+        self.about(fields.get("about"));
+        match kind {
+            Kind::Field | Kind::Vector => fields
+                .get("unit")
+                .map_or(Quantity::Number, |unit| self.quantity(unit)),
+            _ => Quantity::Number,
+        }
+    }
+
+    fn about(&mut self, about: Option<&Item>) {
+        if let Some(about) = about
+            && about.text(self.text).is_none()
+        {
+            let message = format!("`about` takes a text, not {}", about.label(self.text));
+            self.report("wrong_kind", &about.span, message, "write it in quotes");
+        }
     }
 
     /// `"smooth": 20` is a parameter whose value says its kind.
@@ -169,6 +220,7 @@ impl Reader<'_> {
         Parameter {
             kind,
             value: None,
+            folder: None,
             choices: Vec::new(),
             target: Target::of_parameter(&name.value, scalar, quantity, self.units, range),
             span: item.span.clone(),
@@ -206,12 +258,7 @@ impl Reader<'_> {
         let quantity = field("unit").map_or(Quantity::Number, |unit| self.quantity(unit));
         let range = self.range(field("min"), field("max"));
         let mut param = self.empty(name, kind, item, quantity, range);
-        if let Some(about) = field("about")
-            && about.text(self.text).is_none()
-        {
-            let message = format!("`about` takes a text, not {}", about.label(self.text));
-            self.report("wrong_kind", &about.span, message, "write it in quotes");
-        }
+        self.about(field("about"));
         if kind == ParamKind::Choice {
             param.choices = self.choices(field("of"), item);
         }

@@ -42,12 +42,12 @@ impl Problems {
         self.found.push(problem);
     }
 
-    pub(crate) fn count(&self) -> usize {
-        self.found.len()
+    pub(crate) fn extend(&mut self, problems: impl IntoIterator<Item = Diagnostic>) {
+        self.found.extend(problems);
     }
 
-    pub(crate) fn is_empty(&self) -> bool {
-        self.found.is_empty()
+    pub(crate) fn count(&self) -> usize {
+        self.found.len()
     }
 
     /// All problems in the order of their places; those without a place first.

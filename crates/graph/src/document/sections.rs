@@ -7,7 +7,7 @@ use super::fields::Fields;
 use super::params;
 use super::problems::Problems;
 use super::raw::{Item, Number, Shape, Struct, plain};
-use super::{Document, Link, NodeEntry, Spanned, VERSION};
+use super::{DeclaredInput, DeclaredKind, Document, Link, NodeEntry, Parameter, Spanned, VERSION};
 use crate::diagnostic::{Diagnostic, Source};
 use crate::names::{did_you_mean, shown};
 use crate::units::Units;
@@ -43,13 +43,7 @@ pub(super) fn read(
     for (name, item) in reader.entries(fields.get("params"), "params", "a parameter") {
         params.extend(params::read(text, &name, item, units, &mut reader.problems));
     }
-    let mut required = Vec::new();
-    for (name, item) in reader.entries(fields.get("inputs"), "inputs", "an input") {
-        match params::read_input(text, &name, item, units, &mut reader.problems) {
-            Some(param) => params.push(param),
-            None => required.push(name),
-        }
-    }
+    let inputs = reader.inputs(fields.get("inputs"), units, &mut params);
     let nodes = reader.entries(fields.get("nodes"), "nodes", "a node");
     let nodes = nodes
         .into_iter()
@@ -63,7 +57,7 @@ pub(super) fn read(
         source: Arc::clone(source),
         units,
         params,
-        required,
+        inputs,
         nodes,
         outputs,
         outputs_damaged,
@@ -213,6 +207,35 @@ impl<'a> Reader<'a> {
             }
         }
         entries
+    }
+
+    /// Inputs of the graph; those that can be parameters are added to `params`.
+    fn inputs(
+        &mut self,
+        section: Option<&'a Item>,
+        units: Units,
+        params: &mut Vec<Parameter>,
+    ) -> Vec<DeclaredInput> {
+        let mut inputs = Vec::new();
+        for (name, item) in self.entries(section, "inputs", "an input") {
+            let read = params::read_input(self.text, &name, item, units, &mut self.problems);
+            let required = !read.has_default();
+            let kind = match read {
+                params::ReadInput::Param(param, _) => {
+                    params.push(*param);
+                    DeclaredKind::Param(params.len() - 1)
+                }
+                params::ReadInput::Value(kind, quantity) => DeclaredKind::Value(kind, quantity),
+                params::ReadInput::Unknown => DeclaredKind::Unknown,
+            };
+            inputs.push(DeclaredInput {
+                name,
+                kind,
+                span: item.span.clone(),
+                required,
+            });
+        }
+        inputs
     }
 
     fn map(&mut self, section: Option<&'a Item>, name: &str) -> &'a [(Item, Item)] {

@@ -74,6 +74,7 @@ impl KeyPart {
 /// whole results of other nodes, which are named.
 pub(super) fn part_text(
     plan: &Plan,
+    node: &PlanNode,
     spec: &InputSpec,
     input: &PlanInput,
     value: Option<&Value>,
@@ -85,10 +86,10 @@ pub(super) fn part_text(
             let written = input
                 .span
                 .clone()
-                .and_then(|span| plan.source.text().get(span));
+                .and_then(|span| node.source.text().get(span));
             written.unwrap_or("the default").to_owned()
         }
-        (_, Some(value)) => value_text(value, spec.quantity, plan.units),
+        (_, Some(value)) => value_text(value, spec.quantity, node.units),
         (origin, None) => {
             let names: Vec<&str> = sources(plan, origin);
             names.join(", ")
@@ -167,7 +168,7 @@ impl KeyRecord {
             Some(NodeRecord {
                 name: planned.name.clone(),
                 kind: kind_text(planned),
-                units: plan.units.sign().to_owned(),
+                units: planned.units.sign().to_owned(),
                 key: *key,
                 parts: parts.clone(),
             })

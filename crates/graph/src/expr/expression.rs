@@ -51,8 +51,12 @@ impl Expression {
         target: Target,
         mut resolve: impl FnMut(&str, std::ops::Range<usize>, &mut Vec<ResultUse>) -> ResolvedName,
     ) -> Result<Scalar, Vec<ExprError>> {
-        let mut uses = Vec::new();
-        let resolve: &mut Resolve<'_> = &mut |name, span| resolve(name, span, &mut uses);
+        let (mut uses, mut unknown) = (Vec::new(), false);
+        let resolve: &mut Resolve<'_> = &mut |name, span| {
+            let leaf = resolve(name, span, &mut uses);
+            unknown |= matches!(leaf, Ok(None));
+            leaf
+        };
         let compiled = compile(text, resolve)?;
         let whole = 0..text.len();
         let wanted = if target.kind() == Kind::Bool {
@@ -87,6 +91,10 @@ impl Expression {
         let Some(number) = expression.program.as_constant() else {
             return Ok(Scalar::Later(expression));
         };
+        if unknown {
+            // What is wrong with the name was reported; its value says nothing.
+            return Err(Vec::new());
+        }
         expression
             .finish(number)
             .map(Scalar::Known)

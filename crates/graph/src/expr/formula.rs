@@ -162,8 +162,12 @@ impl FormulaTemplate {
         scale: f64,
         mut resolve: impl FnMut(&str, std::ops::Range<usize>, &mut FormulaSlots) -> ResolvedName,
     ) -> Result<Self, Vec<ExprError>> {
-        let mut slots = FormulaSlots::default();
-        let resolve: &mut Resolve<'_> = &mut |name, span| resolve(name, span, &mut slots);
+        let (mut slots, mut unknown) = (FormulaSlots::default(), false);
+        let resolve: &mut Resolve<'_> = &mut |name, span| {
+            let leaf = resolve(name, span, &mut slots);
+            unknown |= matches!(leaf, Ok(None));
+            leaf
+        };
         let compiled = compile(text, resolve)?;
         let whole = 0..text.len();
         if compiled.ty == Some(Type::Bool) {
@@ -177,7 +181,7 @@ impl FormulaTemplate {
         if compiled
             .program
             .as_constant()
-            .is_some_and(|number| !number.is_finite())
+            .is_some_and(|number| !number.is_finite() && !unknown)
         {
             return Err(vec![ExprError::new(whole, "this gives no finite number")]);
         }

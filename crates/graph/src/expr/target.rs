@@ -67,6 +67,14 @@ impl Target {
         }
     }
 
+    /// The same range for numbers that are written in other units.
+    pub(crate) fn in_units(&self, units: Units) -> Self {
+        Self {
+            units,
+            ..self.clone()
+        }
+    }
+
     /// The kind of the value.
     pub fn kind(&self) -> Kind {
         self.kind

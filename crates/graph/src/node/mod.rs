@@ -169,6 +169,11 @@ impl Args {
         }
     }
 
+    /// The next input's value as it is; `None` if it was left out.
+    pub(crate) fn next_value(&mut self) -> Option<Value> {
+        self.values.next().flatten()
+    }
+
     /// The next input's value as its Rust type.
     ///
     /// # Errors

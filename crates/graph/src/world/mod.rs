@@ -17,6 +17,11 @@ pub trait World: Sync {
     /// # Errors
     /// When it does not exist, may not be read, or is not a plain file.
     fn read(&self, path: &str) -> Result<Arc<[u8]>, FileError>;
+
+    /// A name that two paths share if and only if they lead to one file.
+    fn identity(&self, path: &str) -> String {
+        tidy(path)
+    }
 }
 
 /// Why a file could not be read.
@@ -119,6 +124,11 @@ impl DiskWorld {
 }
 
 impl World for DiskWorld {
+    fn identity(&self, path: &str) -> String {
+        let found = self.root.join(path).canonicalize();
+        found.map_or_else(|_| tidy(path), |found| found.to_string_lossy().into_owned())
+    }
+
     fn read(&self, path: &str) -> Result<Arc<[u8]>, FileError> {
         let found = self.resolve(path)?;
         let fail = |reason: String| FileError {

@@ -2,6 +2,7 @@
 
 mod errors;
 mod faults;
+mod includes;
 mod registry;
 mod sound;
 mod stress;

@@ -25,12 +25,13 @@ impl Run<'_> {
         prepared: Prepared,
         arguments: Vec<Option<Value>>,
     ) -> (Done, Option<Values>, Option<ToStore>) {
-        let spec = self.plan.nodes[node].spec;
+        let planned = &self.plan.nodes[node];
+        let spec = planned.spec;
         self.observer.started(node);
         let (start_ms, start) = (self.now(), Instant::now());
         let thread = rayon::current_thread_index().unwrap_or(0);
         let monitor = NodeMonitor { run: self, node };
-        let cx = EvalCx::new(&self.files, &monitor, self.plan.units, prepared.paths);
+        let cx = EvalCx::new(&self.files, &monitor, planned.units, prepared.paths);
         let result = guarded(spec.name, || (spec.eval)(Args::new(arguments), &cx));
         let (warnings, files) = cx.finish();
         let mut run = self.node_run(node, Outcome::Computed);

@@ -32,19 +32,20 @@ impl Run<'_> {
         let mut provenance = Hasher::new();
         provenance
             .text(planned.spec.name)
-            .number(planned.spec.version.into());
+            .number(planned.spec.version.into())
+            .float(planned.units.metres());
         for (spec, input) in planned.spec.inputs.iter().zip(&planned.inputs) {
             let (part, value) = self.part(spec, &input.origin)?;
             if let (Kind::Path, Some(Value::Text(path))) = (spec.kind, &value) {
                 paths.push(path.to_string());
             }
             self.feed_provenance(&mut provenance, spec.name, &input.origin, part.as_ref());
-            let text = explain::part_text(self.plan, spec, input, value.as_ref());
+            let text = explain::part_text(self.plan, planned, spec, input, value.as_ref());
             shown.push(KeyPart::new(spec.name, text, part.as_ref()));
             known &= part.is_some();
             parts.extend(part);
         }
-        let key = known.then(|| key::node_key(planned.spec, self.plan.units, &parts));
+        let key = known.then(|| key::node_key(planned.spec, planned.units, &parts));
         Ok(Prepared {
             paths,
             key,
@@ -106,7 +107,7 @@ impl Run<'_> {
             .map(|(spec, input)| {
                 let value = self.input_value(spec, &input.origin)?;
                 let fitted =
-                    value.map(|value| inputs::fitted(spec, &input.origin, value, self.plan.units));
+                    value.map(|value| inputs::fitted(spec, &input.origin, value, planned.units));
                 Ok(fitted.transpose()?)
             })
             .collect()

@@ -81,7 +81,8 @@ impl Run<'_> {
         );
         let span = planned.span.clone();
         let mut diagnostic =
-            Diagnostic::error("cache_mismatch", &self.plan.source, span, &message, "")
+            Diagnostic::error("cache_mismatch", &planned.source, span, &message, "")
+                .with_places(planned.included.iter().cloned())
                 .with_node(&planned.name);
         diagnostic.help = Some(format!(
             "{} is not pure, or its version was not raised; please report it",
@@ -93,9 +94,11 @@ impl Run<'_> {
     /// A node's error and warnings, shown at its place in the text.
     fn diagnostics(&self, node: usize, done: &Arc<Done>) -> Vec<Diagnostic> {
         let planned = &self.plan.nodes[node];
-        let source = &self.plan.source;
+        let source = &planned.source;
         let at = |span, code, message: &str| {
-            Diagnostic::error(code, source, span, message, "").with_node(&planned.name)
+            Diagnostic::error(code, source, span, message, "")
+                .with_places(planned.included.iter().cloned())
+                .with_node(&planned.name)
         };
         let warnings = done.run.warnings.iter().map(|message| {
             let mut warning = at(planned.span.clone(), "node_warning", message);
