@@ -18,6 +18,7 @@ mod recomputation;
 mod roofs;
 mod several_components;
 mod smoothing;
+mod study;
 mod support;
 mod tidy;
 mod timings;

@@ -13,6 +13,7 @@ use crate::commands::info::InfoArgs;
 use crate::commands::new::NewArgs;
 use crate::commands::nodes::NodesArgs;
 use crate::commands::run::RunArgs;
+use crate::commands::study::StudyArgs;
 
 /// Node-graph procedural modelling for architectural tessellation
 #[derive(Debug, Parser)]
@@ -32,6 +33,7 @@ pub(crate) struct Cli {
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
     Run(RunArgs),
+    Study(StudyArgs),
     Check(CheckArgs),
     Nodes(NodesArgs),
     Info(InfoArgs),

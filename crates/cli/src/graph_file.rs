@@ -11,7 +11,7 @@ use crate::memory;
 use crate::world::{Listener, RecordingWorld, tell};
 
 /// A graph written by people is some kilobytes; more than this is a mistake.
-const LARGEST_GRAPH: u64 = 64 << 20;
+pub(crate) const LARGEST_GRAPH: u64 = 64 << 20;
 
 /// A checked graph and the folder its files are named from.
 pub(crate) struct GraphFile {
@@ -85,10 +85,7 @@ impl GraphFile {
             Ok(bytes) => bytes,
             Err(reason) => return failed(unreadable(reason)),
         };
-        let folder = match path.parent() {
-            Some(folder) if !folder.as_os_str().is_empty() => folder.to_path_buf(),
-            _ => PathBuf::from("."),
-        };
+        let folder = folder_of(path);
         let world = match DiskWorld::new(&folder, allowed) {
             // What is read stands in memory twice: as bytes, and as what they mean.
             Ok(disk) => {
@@ -116,5 +113,13 @@ impl GraphFile {
         let path = &self.path;
         let full = path.canonicalize().unwrap_or_else(|_| path.to_owned());
         full.to_string_lossy().into_owned()
+    }
+}
+
+/// The folder a file is in.
+pub(crate) fn folder_of(path: &Path) -> PathBuf {
+    match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder.to_path_buf(),
+        _ => PathBuf::from("."),
     }
 }

@@ -24,6 +24,17 @@ pub struct Plan {
     pub nodes: Vec<PlanNode>,
     /// The outputs in file order.
     pub outputs: Vec<PlanOutput>,
+    /// What a study measures, in its order; nothing in a plain run.
+    pub measures: Vec<PlanMeasure>,
+}
+
+/// A number or condition over the graph's results, in the graph's units.
+#[derive(Debug, Clone)]
+pub struct PlanMeasure {
+    /// Its name.
+    pub name: String,
+    /// What it is.
+    pub origin: Origin,
 }
 
 /// A parameter and its value in this run.

@@ -3,11 +3,13 @@
 pub(crate) mod cache;
 pub(crate) mod check;
 pub(crate) mod completions;
+pub(crate) mod engine;
 pub(crate) mod graph;
 pub(crate) mod info;
 pub(crate) mod new;
 pub(crate) mod nodes;
 pub(crate) mod run;
+pub(crate) mod study;
 
 use std::path::PathBuf;
 

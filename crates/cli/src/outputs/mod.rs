@@ -19,6 +19,7 @@ use tessgraph_graph::{Diagnostic, Engine, Evaluation, Plan};
 pub(crate) use current::OutputObserver;
 #[cfg(test)]
 pub(crate) use format::FileFormat;
+pub(crate) use tables::{csv_field, csv_number};
 pub(crate) use target::{Folders, InputFile, Target, input_files, targets};
 
 use crate::atomic::write_if_changed;

@@ -165,7 +165,8 @@ fn table_csv(table: &Table, units: Units, text: &mut String) {
 }
 
 /// The fewest digits that read back exactly; nothing for NaN and infinity.
-fn csv_number(value: f64) -> String {
+/// A number as CSV; nothing for NaN and infinity.
+pub(crate) fn csv_number(value: f64) -> String {
     match number(value) {
         Json::Number(number) => {
             let text = number.to_string();
@@ -175,7 +176,8 @@ fn csv_number(value: f64) -> String {
     }
 }
 
-fn csv_field(text: &str) -> String {
+/// A text as CSV, quoted where it must be.
+pub(crate) fn csv_field(text: &str) -> String {
     let special = |character| matches!(character, ',' | '"' | '\n' | '\r');
     let blank = text.starts_with(' ') || text.ends_with(' ');
     if blank || text.contains(special) {

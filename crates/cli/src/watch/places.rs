@@ -47,7 +47,7 @@ impl<'a> Places<'a> {
             (false, Err(reason)) => (None, Some(reason)),
         };
         let mut places = Self {
-            allowed: &args.allow,
+            allowed: &args.engine.allow,
             graph: std::path::absolute(&args.graph).unwrap_or_else(|_| args.graph.clone()),
             dependencies: Dependencies::default(),
             notices,

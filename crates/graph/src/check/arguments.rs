@@ -193,6 +193,25 @@ impl Checker<'_, '_> {
         }
     }
 
+    /// An expression of either type, in the file's units.
+    pub(super) fn number_or_condition(&mut self, name: &str, text: &Text) -> Option<Scalar> {
+        let (scope, units) = (self.scope, self.scope.units);
+        let compiled = [Kind::Number, Kind::Bool].map(|kind| {
+            let target = Target::of_parameter(name, kind, Quantity::Number, units, (None, None));
+            Expression::compile(&text.value, target, |name, span, uses| {
+                scope.leaf(name, span, |use_| slot_of(uses, use_))
+            })
+        });
+        let [number, condition] = compiled;
+        match (number, condition) {
+            (Ok(scalar), _) | (Err(_), Ok(scalar)) => Some(scalar),
+            (Err(errors), Err(_)) => {
+                self.expression_errors((name, Kind::Number), text, errors, "");
+                None
+            }
+        }
+    }
+
     fn compiled(&mut self, name: &str, kind: Kind, text: &Text) -> Option<Scalar> {
         let units = self.scope.units;
         let target = Target::of_parameter(name, kind, Quantity::Number, units, (None, None));

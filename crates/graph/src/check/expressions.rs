@@ -7,6 +7,7 @@ use super::inputs::Checker;
 use super::literal::range_help;
 use super::reference::{Found, NotFound};
 use super::scope::{Named, Scope};
+use crate::diagnostic::{Label, Place};
 use crate::document::Text;
 use crate::expr::{
     ExprError, Expression, FormulaSlots, FormulaTemplate, Leaf, ResolvedName, ResultUse, Scalar,
@@ -80,7 +81,18 @@ impl Checker<'_, '_> {
                 .problems
                 .error(error.code, &span, error.message, error.remark);
             if let Some((place, remark)) = error.elsewhere.map(|place| *place) {
-                problem = problem.with_label(place, remark);
+                // An expression over a graph may stand in another file.
+                let source = &self.scope.document.source;
+                let label = Label {
+                    span: place,
+                    message: remark,
+                };
+                if Arc::ptr_eq(source, &problem.source) {
+                    problem.labels.push(label);
+                } else {
+                    let source = Arc::clone(source);
+                    problem.elsewhere.push(Place { source, label });
+                }
             }
             let help = match (error.help, error.code) {
                 (Some(help), _) => help,

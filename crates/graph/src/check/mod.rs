@@ -12,11 +12,13 @@ mod expressions;
 mod inputs;
 mod interpolate;
 mod literal;
+mod measures;
 mod order;
 mod outputs;
 mod overrides;
 mod reference;
 mod scope;
+pub mod study;
 
 #[cfg(test)]
 mod tests;
@@ -26,14 +28,15 @@ use std::sync::Arc;
 
 pub use overrides::WRONG_SETTING;
 
-use crate::diagnostic::Diagnostic;
-use crate::document::{self, DeclaredInput, DeclaredKind, Document, Problems};
+use crate::diagnostic::{Diagnostic, Source};
+use crate::document::{self, DeclaredInput, DeclaredKind, Document, Problems, Text};
 use crate::names::{quoted, shown};
 use crate::node::NodeSpec;
-use crate::plan::{Origin, Plan, PlanNode, PlanOutput, PlanParameter};
+use crate::plan::{Origin, Plan, PlanMeasure, PlanNode, PlanOutput, PlanParameter};
 use crate::world::{MemoryWorld, World};
 use expand::{Call, ExpandedNode, Expander};
 use scope::Givings;
+use study::StudyGraph;
 
 /// What the caller of [`load`] may change about a graph.
 #[derive(Debug, Clone, Default)]
@@ -87,7 +90,35 @@ pub fn load_with(
     options: &LoadOptions,
     world: &dyn World,
 ) -> Loaded {
-    let (mut document, mut problems) = match document::read(name, bytes) {
+    let graph = StudyGraph {
+        name,
+        bytes,
+        registry,
+    };
+    let mut prepare = |document: &mut Document, problems: &mut Problems| {
+        overrides::apply(&mut document.params, &options.set, problems);
+    };
+    load_prepared(graph, &mut prepare, None, world)
+}
+
+/// Expressions over a graph that stand in another file.
+struct Measured<'a> {
+    source: &'a Arc<Source>,
+    /// Names and expressions.
+    measures: &'a [(Text, Text)],
+}
+
+/// Gives the parameters of a graph their values, and reports what is wrong.
+type Prepare<'p> = dyn FnMut(&mut Document, &mut Problems) + 'p;
+
+/// Reads and checks a graph whose parameters `prepare` gives their values.
+fn load_prepared(
+    graph: StudyGraph<'_>,
+    prepare: &mut Prepare<'_>,
+    measured: Option<&Measured<'_>>,
+    world: &dyn World,
+) -> Loaded {
+    let (mut document, mut problems) = match document::read(graph.name, graph.bytes) {
         Ok(read) => read,
         Err(problems) => {
             return Loaded {
@@ -96,37 +127,56 @@ pub fn load_with(
             };
         }
     };
-    overrides::apply(&mut document.params, &options.set, &mut problems);
+    prepare(&mut document, &mut problems);
     check_runnable(&document, &mut problems);
-    let mut expander = Expander::new(name, registry, world);
+    let mut expander = Expander::new(graph.name, graph.registry, world);
     let given = Givings::defaults(&document);
-    let call = expander.main(name, Rc::new(document), given);
-    let outputs = expander.expand(&call, |expander, scope, found| {
+    let call = expander.main(graph.name, Rc::new(document), given);
+    let ends = expander.expand(&call, |expander, scope, found| {
         let outputs = outputs::check(scope, &call.document, found, &mut |name, target, span| {
             expander.single(&call, name, target, span)
         });
         outputs::check_results(scope, &call.document.results, found);
-        outputs
+        let measures = measured.map_or_else(Vec::new, |measured| {
+            let mut problems = Problems::new(measured.source);
+            let measures = measures::check(scope, measured.measures, &mut problems);
+            let problems = problems.into_sorted();
+            problems
+                .into_iter()
+                .for_each(|problem| expander.report(problem));
+            measures
+        });
+        (outputs, measures)
     });
     for problem in problems.into_sorted() {
         expander.report(problem);
     }
-    finish(expander, &call, outputs)
+    finish(expander, &call, ends)
 }
 
 /// The plan, if nothing is wrong and no node needs itself.
-fn finish(mut expander: Expander<'_>, call: &Call, mut outputs: Vec<PlanOutput>) -> Loaded {
+fn finish(
+    mut expander: Expander<'_>,
+    call: &Call,
+    (mut outputs, mut measures): (Vec<PlanOutput>, Vec<PlanMeasure>),
+) -> Loaded {
     let places = expander.sort_nodes();
     let order = order::check(&mut expander);
     let included = std::mem::take(&mut expander.included);
     let plan = match order {
         Some(order) if expander.is_sound() => {
             let order_of = inverse(&order);
+            let last: Vec<usize> = places.iter().map(|&place| order_of[place]).collect();
             for output in &mut outputs {
-                output.result.node = order_of[places[output.result.node]];
+                output.result.node = last[output.result.node];
+            }
+            for measure in &mut measures {
+                renumber(&mut measure.origin, &last);
             }
             let nodes = plan_nodes(expander.nodes, &order, &order_of);
-            Ok(plan(call, included.clone(), nodes, outputs))
+            let mut plan = plan(call, included.clone(), nodes, outputs);
+            plan.measures = measures;
+            Ok(plan)
         }
         _ => Err(expander.into_problems()),
     };
@@ -161,6 +211,7 @@ fn plan(
         parameters: parameters.collect(),
         nodes,
         outputs,
+        measures: Vec::new(),
     }
 }
 

@@ -13,6 +13,7 @@ mod params;
 mod problems;
 mod raw;
 mod sections;
+mod study;
 mod syntax;
 mod text;
 mod walk;
@@ -24,6 +25,7 @@ pub(crate) use fields::Fields;
 pub(crate) use parameter::{ParamKind, Parameter};
 pub(crate) use problems::Problems;
 pub(crate) use raw::{Field, Item, Number, Shape, plain};
+pub(crate) use study::{StudyDocument, read_study};
 pub(crate) use text::Text;
 
 use crate::diagnostic::{Diagnostic, Source};

@@ -31,7 +31,7 @@ pub(super) fn read(
         .name
         .clone()
         .unwrap_or(root.span.start..root.span.start + 1);
-    if let Err(problem) = check_version(text, graph, &head, &problems) {
+    if let Err(problem) = check_version(text, graph, &head, "graph", &problems) {
         return Err(vec![*problem]);
     }
     let fields = Fields::new(text, &graph.fields, &SECTIONS, "a graph", &mut problems);
@@ -118,10 +118,11 @@ fn graph_fields<'a>(
 }
 
 /// The version comes first: a newer file may mean anything by the rest.
-fn check_version(
+pub(super) fn check_version(
     text: &str,
     graph: &Struct,
     head: &Range<usize>,
+    what: &str,
     problems: &Problems,
 ) -> Result<(), Box<Diagnostic>> {
     let field = graph
@@ -129,7 +130,12 @@ fn check_version(
         .iter()
         .find(|field| plain(text, &field.name) == "version");
     let Some(item) = field.map(|field| &field.value) else {
-        let error = problems.error("bad_version", head, "the graph states no version", "here");
+        let error = problems.error(
+            "bad_version",
+            head,
+            format!("the {what} states no version"),
+            "here",
+        );
         return Err(Box::new(
             error.with_help(format!("add `version: {VERSION},` as first field")),
         ));
@@ -142,7 +148,7 @@ fn check_version(
         Some(Number::Whole(VERSION)) => Ok(()),
         Some(Number::Whole(version)) if version > VERSION => error(
             format!(
-                "this graph is of version {version}, but this program reads versions up to {VERSION}"
+                "this {what} is of version {version}, but this program reads versions up to {VERSION}"
             ),
             format!("install a release of tessgraph that reads version {version}"),
         ),

@@ -8,8 +8,9 @@ use tessgraph_geometry::digest::Digest;
 
 use super::cache::Cache;
 use super::explain::KeyPart;
+use super::inputs::value_of;
 use crate::diagnostic::{Diagnostic, Severity};
-use crate::plan::ResultRef;
+use crate::plan::{PlanMeasure, ResultRef};
 use crate::value::Value;
 
 /// What the evaluator did about a node.
@@ -158,6 +159,32 @@ impl Evaluation {
                 .diagnostics
                 .iter()
                 .all(|d| d.severity != Severity::Error)
+    }
+}
+
+impl PlanMeasure {
+    /// Its value, a number in the graph's units or a condition; its
+    /// [`Origin::results`](crate::plan::Origin::results) must have been asked for.
+    ///
+    /// # Errors
+    /// In words, when something it needs could not be computed, or when it is no
+    /// finite number.
+    pub fn value(&self, evaluation: &Evaluation) -> Result<Value, String> {
+        let results = self.origin.results();
+        if results
+            .iter()
+            .any(|result| evaluation.value(*result).is_none())
+        {
+            return Err("what it needs could not be computed".to_owned());
+        }
+        // All of them are there, as was just seen.
+        let get = |result| {
+            evaluation
+                .value(result)
+                .cloned()
+                .unwrap_or(Value::Bool(false))
+        };
+        value_of(&self.origin, &get)?.ok_or_else(|| "it has none".to_owned())
     }
 }
 

@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use crate::args::{Setting, existing, setting};
-use crate::memory::parse_size;
+use crate::args::{Setting, setting};
+use crate::commands::engine::EngineArgs;
 
 /// Makes the outputs of a graph
 #[derive(Debug, Args)]
@@ -36,27 +36,14 @@ pub(crate) struct RunArgs {
     /// Writes when each node ran to this file, for Perfetto or Chrome's tracing
     #[arg(long, value_name = "FILE")]
     pub(crate) timings: Option<PathBuf>,
-    /// Computes everything anew
-    #[arg(long)]
-    pub(crate) no_cache: bool,
-    /// Keeps results in this folder instead of the user's cache
-    #[arg(long, value_name = "DIR", conflicts_with = "no_cache")]
-    pub(crate) cache: Option<PathBuf>,
     /// Says of each node what has changed since the last run
     #[arg(long, conflicts_with = "no_cache")]
     pub(crate) explain: bool,
     /// Computes this share of reused results again and compares, as 5%
     #[arg(long, value_name = "PERCENT", value_parser = percent, conflicts_with = "no_cache")]
     pub(crate) verify_cache: Option<f64>,
-    /// How many threads compute; results do not depend on it
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    pub(crate) threads: Option<u16>,
-    /// A folder outside the graph's that may be read from and written to
-    #[arg(long, value_name = "PATH", value_parser = existing())]
-    pub(crate) allow: Vec<PathBuf>,
-    /// How much memory may be used, as 2GB or 512MiB
-    #[arg(long, value_name = "SIZE", value_parser = parse_size)]
-    pub(crate) max_memory: Option<u64>,
+    #[command(flatten)]
+    pub(crate) engine: EngineArgs,
 }
 
 /// How a run is reported.

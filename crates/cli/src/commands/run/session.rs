@@ -16,16 +16,12 @@ use crate::commands::{FAILED, USAGE};
 use crate::diagnostics::{error_count, without_place};
 use crate::graph_file::GraphFile;
 use crate::interrupt;
-use crate::memory::{count_this_thread, default_limit, set_limit};
 use crate::outputs::{Folders, OutputObserver, Outputs, Target, WrittenOutput, targets};
 use crate::places::is_same_file;
 use crate::progress::Progress;
 use crate::text::printable;
 use crate::timings::{self, EVALUATE, Phases};
 use crate::world::Listener;
-
-/// The share of the memory limit that kept results may take.
-const CACHE_SHARE: u64 = 4;
 
 /// What one command keeps from run to run.
 pub(crate) struct Session<'a> {
@@ -111,22 +107,17 @@ impl<'a> Session<'a> {
         registry: &'static [NodeSpec],
         folder: Option<&Path>,
     ) -> Result<Self, Stopped> {
-        let mut pool = rayon::ThreadPoolBuilder::new().start_handler(|_| count_this_thread());
-        if let Some(threads) = args.threads {
-            pool = pool.num_threads(threads.into());
-        }
-        let pool = pool.build().map_err(|error| Stopped::Before {
+        let pool = args.engine.pool().map_err(|message| Stopped::Before {
             status: FAILED,
             code: "threads",
-            message: format!("cannot start threads: {error}"),
+            message,
             help: Some("ask for fewer with `--threads`".to_owned()),
         })?;
-        let memory = args.max_memory.unwrap_or_else(default_limit);
-        set_limit(memory);
+        let bytes = args.engine.cache_bytes();
         Ok(Self {
             args,
             registry,
-            engine: engine(args, folder, memory / CACHE_SHARE),
+            engine: engine(args, folder, bytes),
             pool,
         })
     }
@@ -139,7 +130,8 @@ impl<'a> Session<'a> {
             let mut phases = Phases::starting(start);
             let args = self.args;
             let opened = phases.during("check", || {
-                let (set, allow, listener) = (&args.set, &args.allow, control.listener.as_ref());
+                let (set, listener) = (&args.set, control.listener.as_ref());
+                let allow = &args.engine.allow;
                 GraphFile::open_telling(&args.graph, self.registry, set, allow, listener)
             });
             let file = opened.file.map_err(Stopped::Graph)?;
@@ -176,7 +168,7 @@ impl<'a> Session<'a> {
         let folders = Folders {
             graph: &file.folder,
             out: out.unwrap_or(&file.folder),
-            allowed: &args.allow,
+            allowed: &args.engine.allow,
             file: &file.path,
         };
         targets(&file.plan, &outputs, &folders, self.registry).map_err(Stopped::Graph)
@@ -283,13 +275,10 @@ fn tidy(path: &str) -> PathBuf {
 /// The engine the arguments ask for; `folder` keeps results unless they name
 /// another one.
 fn engine(args: &RunArgs, folder: Option<&Path>, bytes: u64) -> Engine {
-    if args.no_cache {
+    if args.engine.no_cache {
         return Engine::without_cache();
     }
-    let engine = match args.cache.as_deref().or(folder) {
-        Some(folder) => Engine::with_disk(bytes, folder),
-        None => Engine::new(bytes),
-    };
+    let engine = args.engine.caching(folder, bytes);
     match args.verify_cache {
         Some(percent) => engine.verifying(percent),
         None => engine,
