@@ -6,8 +6,9 @@ use std::sync::Arc;
 
 use clap::Args;
 use serde_json::{Value as Json, json};
+use tessgraph_geometry::intersect::{IntersectOptions, Intersections, intersections};
 use tessgraph_geometry::measure::{MeshMeasures, measure_mesh};
-use tessgraph_geometry::{Monitor, Topology};
+use tessgraph_geometry::{GeometryError, Mesh, Monitor, Topology};
 use tessgraph_graph::world::{DiskWorld, World as _, read_plain};
 use tessgraph_graph::{Diagnostic, Label, Severity, Source, six_digits};
 use tessgraph_io::{Format, IoError, Loaded, Place, ReadOptions, ResolveError};
@@ -27,6 +28,9 @@ pub(crate) struct InfoArgs {
     /// Gives the figures as JSON
     #[arg(long)]
     json: bool,
+    /// Counts the pairs of faces that cross, by the rule of CheckIntersections
+    #[arg(long)]
+    intersections: bool,
 }
 
 /// Stops reading when the user asks for it.
@@ -60,6 +64,19 @@ pub(crate) fn info(args: &InfoArgs, cx: &mut Context<'_, '_>) -> u8 {
         .map(|text| warning(&name, text))
         .collect();
     print(cx.console, &warnings);
+    let crossings = match args
+        .intersections
+        .then(|| crossings(&loaded.mesh))
+        .transpose()
+    {
+        Ok(crossings) => crossings,
+        Err(GeometryError::Cancelled) => return INTERRUPTED,
+        Err(error) => {
+            let message = format!("cannot look for crossing faces: {error}");
+            print(cx.console, &[without_place("bad_mesh", &name, message)]);
+            return FAILED;
+        }
+    };
     let measures = measure_mesh(&loaded.mesh);
     if !measures.is_finite() {
         let message = "its coordinates are so large that its area or volume overflows";
@@ -69,12 +86,16 @@ pub(crate) fn info(args: &InfoArgs, cx: &mut Context<'_, '_>) -> u8 {
         return FAILED;
     }
     let text = if args.json {
-        pretty(&measures_json(&measures))
+        pretty(&measures_json(&measures, crossings.as_ref()))
     } else {
-        page(&measures, loaded.mesh.topology(), format)
+        page(&measures, &loaded.mesh, crossings.as_ref(), format)
     };
     cx.console.data(&text);
     OK
+}
+
+fn crossings(mesh: &Mesh) -> Result<Intersections, GeometryError> {
+    intersections(mesh, &IntersectOptions::default(), &UntilInterrupt)
 }
 
 /// The mesh, or why it cannot be had; `None` when the user asked to stop.
@@ -165,7 +186,7 @@ fn warning(name: &str, text: &str) -> Diagnostic {
 
 /// The documented object: counts as written in the file, lengths as in the file
 /// (metres for glTF).
-fn measures_json(measures: &MeshMeasures) -> Json {
+fn measures_json(measures: &MeshMeasures, crossings: Option<&Intersections>) -> Json {
     let point = |point: [f64; 3]| Json::Array(point.map(number).to_vec());
     let bounds = measures
         .bounds
@@ -185,12 +206,17 @@ fn measures_json(measures: &MeshMeasures) -> Json {
         "bounds": bounds,
         "area": number(measures.area),
         "volume": measures.volume.map_or(Json::Null, number),
-        "intersections": Json::Null,
+        "intersections": crossings.map(|found| found.pairs.len()),
     })
 }
 
 /// The figures for people, with what they mean.
-fn page(measures: &MeshMeasures, topology: &Topology, format: Format) -> String {
+fn page(
+    measures: &MeshMeasures,
+    mesh: &Mesh,
+    crossings: Option<&Intersections>,
+    format: Format,
+) -> String {
     let unit = if format.is_metric() { " m" } else { "" };
     let row = |name: &str, value: String| vec![name.to_owned(), value];
     let mut rows = vec![
@@ -230,10 +256,27 @@ fn page(measures: &MeshMeasures, topology: &Topology, format: Format) -> String 
     }
     let mut text = table(&rows, &[Align::Left, Align::Left]);
     text.push('\n');
-    for line in verdicts(measures, topology) {
+    for line in verdicts(measures, mesh.topology())
+        .into_iter()
+        .chain(crossings.map(crossing_verdict))
+    {
         let _ = writeln!(text, "{line}");
     }
     text
+}
+
+/// "3 pairs of faces cross; 2 more only touch or overlap".
+fn crossing_verdict(found: &Intersections) -> String {
+    let cross = match found.pairs.len() {
+        0 => "no two faces cross".to_owned(),
+        1 => "1 pair of faces crosses".to_owned(),
+        pairs => format!("{pairs} pairs of faces cross"),
+    };
+    match found.contacts.len() {
+        0 => cross,
+        1 => format!("{cross}; 1 more only touches or overlaps"),
+        contacts => format!("{cross}; {contacts} more only touch or overlap"),
+    }
 }
 
 /// What the figures say about the mesh's soundness, the main thing first.

@@ -140,6 +140,7 @@ fn info_measures_a_mesh_file() {
     assert_eq!(figures["euler"], json!(2));
     assert_eq!(figures["bounds"], json!([[0.0, 0.0, 0.0], [1.0, 1.0, 1.0]]));
     assert!((figures["volume"].as_f64().unwrap() - 1.0 / 6.0).abs() < 1e-15);
+    assert!(figures["intersections"].is_null());
     assert!(desk.program(&["info", &path]).out.contains("\nclosed\n"));
     let open = desk.write("o.obj", &TETRAHEDRON.replace("f 3 1 4\n", ""));
     let open = desk.program(&["info", &open.to_string_lossy()]);
@@ -148,6 +149,32 @@ fn info_measures_a_mesh_file() {
         "{}",
         open.out
     );
+}
+
+#[test]
+fn info_counts_faces_that_cross_when_asked() {
+    let desk = Desk::new();
+    let asked = |path: &std::path::Path, more: &[&str]| {
+        let path = path.to_string_lossy();
+        desk.program(&[&["info", &path, "--intersections"], more].concat())
+    };
+    let sound = desk.write("t.obj", TETRAHEDRON);
+    assert!(asked(&sound, &[]).out.ends_with("no two faces cross\n"));
+    let number = |path: &std::path::Path| -> Value {
+        let out = asked(path, &["--json"]).out;
+        serde_json::from_str::<Value>(&out).unwrap()["intersections"].clone()
+    };
+    assert_eq!(number(&sound), json!(0));
+    // A triangle that cuts through the three faces at the corner (1, 0, 0).
+    let cut = "v 0.8 -1 -1\nv 0.8 2 -1\nv 0.8 -1 2\nf 5 6 7\n";
+    let crossed = desk.write("c.obj", &format!("{TETRAHEDRON}{cut}"));
+    let given = asked(&crossed, &[]);
+    assert!(
+        given.status == 0 && given.out.ends_with("3 pairs of faces cross\n"),
+        "{}",
+        given.out
+    );
+    assert_eq!(number(&crossed), json!(3));
 }
 
 #[test]
