@@ -12,6 +12,7 @@ use tessgraph_macros::{Inputs, Outputs};
 /// with nothing of the surface inside: how far it is to the medial axis (Wallner
 /// et al. 2001). Between walls it is half their gap, in a valley the radius of
 /// the fold. A thickness beyond it cannot be free of crossings along normals.
+/// Half the face size means a quarter of the error.
 ///
 /// ```ron
 /// Graph(version: 1, nodes: {
@@ -48,6 +49,7 @@ pub(crate) struct Offsets {
 
 impl Node for MaxOffset {
     type Output = Offsets;
+    const VERSION: u32 = 2;
 
     fn eval(self, cx: &EvalCx<'_>) -> Result<Self::Output, NodeError> {
         let limit = self.limit.unwrap_or_else(|| self.mesh.diagonal());

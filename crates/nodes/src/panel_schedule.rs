@@ -14,7 +14,10 @@ use crate::compensate_thickness::BorderChoice;
 /// Lists the panels of an array with their measures, one row each.
 ///
 /// A panel is a component of `ArrayComponents`, or a connected piece of a mesh
-/// from elsewhere. Sizes are extents along x, y and z. The volume is empty where
+/// from elsewhere. Sizes are extents along x, y and z; the blank is the smallest
+/// sheet a panel can be cut from, however it leans: in the plane that fits its
+/// surface best the rectangle of least area, and the depth across it. That is what
+/// is ordered, nested and crated. The volume is empty where
 /// a panel's own faces do not close it (joined neighbours share theirs), the
 /// thickness where no base is given. Planarity is the largest distance of a
 /// corner to the best-fitting plane of its face. Written as CSV.
@@ -44,6 +47,7 @@ pub(crate) struct PanelSchedule {
 
 impl Node for PanelSchedule {
     type Output = Arc<Table>;
+    const VERSION: u32 = 2;
 
     fn eval(self, cx: &EvalCx<'_>) -> Result<Self::Output, NodeError> {
         let surface = match &self.base {
@@ -91,6 +95,9 @@ fn columns(panels: &[Panel]) -> Vec<Column> {
         number("size_x", length, &|panel| Some(panel.size.x)),
         number("size_y", length, &|panel| Some(panel.size.y)),
         number("size_z", length, &|panel| Some(panel.size.z)),
+        number("blank_length", length, &|panel| Some(panel.blank[0])),
+        number("blank_width", length, &|panel| Some(panel.blank[1])),
+        number("blank_depth", length, &|panel| Some(panel.blank[2])),
         number("area", area, &|panel| Some(panel.area)),
         number("volume", volume, &|panel| panel.volume),
         number("planarity", length, &|panel| Some(panel.planarity)),

@@ -2,6 +2,7 @@
 
 mod curvature;
 mod distance;
+mod jet;
 mod max_offset;
 
 pub use curvature::{Curvature, curvature};

@@ -1,6 +1,7 @@
 //! Measures of meshes: counts, area and volume, thickness over a base,
 //! planarity, distortion, and schedules of panels.
 
+mod blank;
 mod defects;
 mod distortion;
 mod inversion;

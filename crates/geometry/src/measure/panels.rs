@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::blank::{Moments, blank};
 use super::planarity;
 use crate::array::{BASE_FACE, COMPONENT, PANEL};
 use crate::intersect::components;
@@ -22,6 +23,10 @@ pub struct Panel {
     pub faces: usize,
     /// Extent along x, y and z, in metres.
     pub size: DVec3,
+    /// Length, width and depth of the smallest sheet it can be cut from, in metres:
+    /// in the plane that fits its surface best the rectangle of least area, and
+    /// across it the depth.
+    pub blank: [f64; 3],
     /// Area of its faces in m².
     pub area: f64,
     /// Enclosed volume in m³; `None` unless its faces close it.
@@ -50,6 +55,7 @@ struct Gathered {
     faces: usize,
     low: DVec3,
     high: DVec3,
+    moments: Moments,
     area: f64,
     volume: f64,
     planarity: f64,
@@ -66,6 +72,7 @@ impl Gathered {
             faces: 0,
             low: DVec3::INFINITY,
             high: DVec3::NEG_INFINITY,
+            moments: Moments::default(),
             area: 0.0,
             volume: 0.0,
             planarity: 0.0,
@@ -111,9 +118,11 @@ pub fn panels(
         let panel = &mut gathered[panel as usize];
         panel.planarity = panel.planarity.max(face.plane);
     }
+    let uses = vertices_of_panels(mesh, &of_face);
     if let Some(base) = base {
-        gather_distances(mesh, &of_face, base, &mut gathered, monitor)?;
+        gather_distances(mesh, &uses, base, &mut gathered, monitor)?;
     }
+    let blanks = blanks(mesh, &uses, &gathered);
     let open = open_panels(mesh, &of_face, count);
     let integer =
         |name: &str, face: usize| match mesh.attribute(name, Domain::Face).map(|a| a.values()) {
@@ -126,6 +135,7 @@ pub fn panels(
         component: integer(COMPONENT, of.first),
         faces: of.faces,
         size: of.high - of.low,
+        blank: blanks[number],
         area: of.area,
         volume: (!open[number]).then_some(of.volume),
         planarity: of.planarity,
@@ -146,6 +156,7 @@ fn gather_shapes(mesh: &Mesh, of_face: &[u32], gathered: &mut [Gathered]) {
         let [a, b, c] = triangle.map(|vertex| positions[vertex as usize] - middle);
         let cross = (b - a).cross(c - a);
         panel.area += cross.length() * 0.5;
+        panel.moments.add([a, b, c], cross.length() * 0.5);
         panel.volume += a.dot(cross) / 6.0;
         for place in [a, b, c] {
             panel.low = panel.low.min(place);
@@ -154,10 +165,32 @@ fn gather_shapes(mesh: &Mesh, of_face: &[u32], gathered: &mut [Gathered]) {
     }
 }
 
-/// Distances of each panel's vertices, each vertex once per panel.
+/// The vertices of each panel, each once: (panel, vertex), ascending.
+fn vertices_of_panels(mesh: &Mesh, of_face: &[u32]) -> Vec<(u32, u32)> {
+    let mut uses: Vec<(u32, u32)> = Vec::with_capacity(mesh.corner_count());
+    for (face, &panel) in of_face.iter().enumerate() {
+        uses.extend(mesh.face(face).iter().map(|&vertex| (panel, vertex)));
+    }
+    uses.sort_unstable();
+    uses.dedup();
+    uses
+}
+
+/// The blank of each panel, measured about its first corner.
+fn blanks(mesh: &Mesh, uses: &[(u32, u32)], gathered: &[Gathered]) -> Vec<[f64; 3]> {
+    let of_panel = |uses: &[(u32, u32)]| {
+        let panel = &gathered[uses[0].0 as usize];
+        let middle = mesh.positions()[mesh.face(panel.first)[0] as usize];
+        let place = |&(_, vertex): &(u32, u32)| mesh.positions()[vertex as usize] - middle;
+        blank(&uses.iter().map(place).collect::<Vec<_>>(), &panel.moments)
+    };
+    uses.chunk_by(|a, b| a.0 == b.0).map(of_panel).collect()
+}
+
+/// Distances of each panel's vertices.
 fn gather_distances(
     mesh: &Mesh,
-    of_face: &[u32],
+    uses: &[(u32, u32)],
     base: &PanelBase<'_>,
     gathered: &mut [Gathered],
     monitor: &dyn Monitor,
@@ -165,13 +198,7 @@ fn gather_distances(
     let found = base
         .surface
         .distances(mesh.positions(), base.border, monitor)?;
-    let mut uses: Vec<(u32, u32)> = Vec::with_capacity(mesh.corner_count());
-    for (face, &panel) in of_face.iter().enumerate() {
-        uses.extend(mesh.face(face).iter().map(|&vertex| (panel, vertex)));
-    }
-    uses.sort_unstable();
-    uses.dedup();
-    for (panel, vertex) in uses {
+    for &(panel, vertex) in uses {
         let distance = found[vertex as usize].0;
         if distance > base.ignore_below {
             gathered[panel as usize].add_distance(distance);
@@ -232,6 +259,9 @@ mod tests {
             (0, 6, None)
         );
         assert_eq!(found[0].size, DVec3::new(1.0, 2.0, 0.5));
+        for (found, expected) in found[0].blank.into_iter().zip([2.0, 1.0, 0.5]) {
+            assert!((found - expected).abs() < 1e-14);
+        }
         assert!((found[0].area - 7.0).abs() < 1e-14);
         assert!((found[0].volume.unwrap() - 1.0).abs() < 1e-14);
         assert_eq!(found[0].thickness, Some([0.5; 3]));

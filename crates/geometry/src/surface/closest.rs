@@ -57,12 +57,24 @@ impl Surface {
 
     /// The closest place to `point` if it is not farther than `reach`.
     pub fn closest_within(&self, point: DVec3, reach: f64) -> Option<Closest> {
+        self.closest_among(point, reach, |_| true)
+    }
+
+    /// The closest place to `point` on a face that `counts`, if it is not farther
+    /// than `reach`.
+    pub(crate) fn closest_among(
+        &self,
+        point: DVec3,
+        reach: f64,
+        counts: impl Fn(u32) -> bool,
+    ) -> Option<Closest> {
+        let counts = |triangle: u32| counts(self.faces[triangle as usize]);
         let mut best = Best {
             squared: reach * reach,
             triangle: u32::MAX,
             leaf: 0,
         };
-        self.search(point, &mut best);
+        self.search(point, &mut best, counts);
         (best.triangle != u32::MAX).then(|| self.finish(point, &best))
     }
 
@@ -74,13 +86,14 @@ impl Surface {
             triangle: 0,
             leaf: 0,
         };
-        self.visit(point, leaf, &mut best);
-        self.search(point, &mut best);
+        self.visit(point, leaf, &mut best, |_| true);
+        self.search(point, &mut best, |_| true);
         self.finish(point, &best)
     }
 
     /// Walks the tree, nearest child first.
-    fn search(&self, point: DVec3, best: &mut Best) {
+    #[inline]
+    fn search(&self, point: DVec3, best: &mut Best, counts: impl Fn(u32) -> bool + Copy) {
         let mut waiting = Waiting::new(self.root);
         while let Some((squared, reference)) = waiting.pop() {
             let limit = best.squared * SLACK;
@@ -88,7 +101,7 @@ impl Surface {
                 continue;
             }
             if reference & LEAF != 0 {
-                self.visit(point, reference & !LEAF, best);
+                self.visit(point, reference & !LEAF, best, counts);
             } else {
                 let node = &self.nodes[reference as usize];
                 let squares = node.squared_distances(point);
@@ -97,13 +110,14 @@ impl Surface {
         }
     }
 
-    fn visit(&self, point: DVec3, leaf: u32, best: &mut Best) {
+    #[inline]
+    fn visit(&self, point: DVec3, leaf: u32, best: &mut Best, counts: impl Fn(u32) -> bool) {
         let lanes = &self.leaves[leaf as usize];
         let squares = lanes.squared_distances(point);
         for (&squared, &triangle) in squares.iter().zip(&lanes.triangles) {
             // Total order: distance, then number; the order of visits is no matter.
             let tie = squared <= best.squared && triangle < best.triangle;
-            if squared < best.squared || tie {
+            if (squared < best.squared || tie) && counts(triangle) {
                 *best = Best {
                     squared,
                     triangle,
