@@ -1,6 +1,7 @@
 //! Tests of the whole program, in one binary.
 
 mod bad_geometry;
+mod bad_input;
 mod cache;
 mod cli;
 mod closed_forms;
@@ -15,6 +16,7 @@ mod peer;
 mod per_vertex;
 mod picture;
 mod recomputation;
+mod require;
 mod roofs;
 mod several_components;
 mod smoothing;

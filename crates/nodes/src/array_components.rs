@@ -13,7 +13,7 @@ use tessgraph_graph::{EvalCx, Node, NodeError};
 use tessgraph_macros::{Choice, Inputs, Outputs};
 
 use crate::compensate_thickness::BorderChoice;
-use crate::fit_component::{FitChoice, warn_of_shape};
+use crate::fit_component::{FitChoice, warn_of_outside, warn_of_shape};
 use crate::support::choice_of_components::{Cells, Chooser};
 
 /// Maps a component to every face of a base surface (paper, figure 1).
@@ -246,6 +246,7 @@ impl Node for ArrayComponents {
         let components = self.all_components()?;
         for component in &components {
             warn_of_shape(component, &fit, cx)?;
+            warn_of_outside(component, &fit, cx)?;
         }
         let parents = match self.domain {
             DomainChoice::Face => None,
@@ -268,6 +269,9 @@ impl Node for ArrayComponents {
             ..ArrayOptions::default()
         };
         let (array, report) = self.array(&components, &options, cx)?;
+        if array.placed == 0 {
+            cx.warn("no component was placed: no face of the base was chosen to take one");
+        }
         if array.skipped_parents > 0 {
             cx.warn(format!(
                 "{} coarse faces take no component: they have not four sides",

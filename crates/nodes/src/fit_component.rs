@@ -151,3 +151,33 @@ pub(crate) fn warn_of_shape(component: &Mesh, fit: &Fit, cx: &EvalCx<'_>) -> Res
     }
     Ok(())
 }
+
+/// Warns of vertices beyond the unit square where x and y are u and v already.
+pub(crate) fn warn_of_outside(
+    component: &Mesh,
+    fit: &Fit,
+    cx: &EvalCx<'_>,
+) -> Result<(), NodeError> {
+    if *fit != Fit::Unit {
+        return Ok(());
+    }
+    let frame = component_frame(component, fit)?;
+    // A hair of room, so that rounding at the border is not reported.
+    let beyond = |x: f64| !(-1e-9..=1.0 + 1e-9).contains(&x);
+    let outside = |vertex: &u32| {
+        let uv = frame.uv(component.positions()[*vertex as usize].truncate());
+        beyond(uv.x) || beyond(uv.y)
+    };
+    let vertices: Vec<u32> = (0..component.vertex_count() as u32)
+        .filter(outside)
+        .collect();
+    if !vertices.is_empty() {
+        cx.warn(format!(
+            "vertices {} of the component lie outside the unit square and reach beyond \
+             their face; cut or repeat them with FitComponent, or fit its box with \
+             `fit: Bounds`",
+            list_ids(&vertices)
+        ));
+    }
+    Ok(())
+}

@@ -32,10 +32,19 @@ impl Run<'_> {
         let thread = rayon::current_thread_index().unwrap_or(0);
         let monitor = NodeMonitor { run: self, node };
         let cx = EvalCx::new(&self.files, &monitor, planned.units, prepared.paths);
+        let fed_empty = arguments.iter().flatten().any(is_empty_mesh);
         let result = guarded(spec.name, || (spec.eval)(Args::new(arguments), &cx));
         let (warnings, files) = cx.finish();
         let mut run = self.node_run(node, Outcome::Computed);
         run.warnings = warnings;
+        if let Ok(values) = &result
+            && run.warnings.is_empty()
+            && !fed_empty
+            && values.iter().any(is_empty_mesh)
+        {
+            run.warnings
+                .push("the result is a mesh without faces".to_owned());
+        }
         let mut done = Done {
             run,
             error: None,
@@ -103,6 +112,10 @@ impl Run<'_> {
             cache.store(work);
         }
     }
+}
+
+fn is_empty_mesh(value: &Value) -> bool {
+    matches!(value, Value::Mesh(mesh) if mesh.face_count() == 0)
 }
 
 /// Lends a node the run's cancellation and passes its progress on.
