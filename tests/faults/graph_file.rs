@@ -294,6 +294,64 @@ fn f026_a_node_with_100_000_inputs() {
     desk.go().made();
 }
 
+/// A graph that does nothing but include another.
+fn including(path: &str) -> String {
+    format!(
+        "Graph(version: 1, nodes: {{\"out\": Subgraph(path: \"{path}\")}},
+         results: {{\"out\": \"out\"}}, outputs: {{\"o.obj\": \"out\"}})"
+    )
+}
+
+#[test]
+fn f027_graphs_that_include_themselves() {
+    for path in ["g.ron", "./g.ron", "in/../g.ron"] {
+        let desk = Desk::with(including(path));
+        desk.write("in/x", "");
+        desk.go().refused(&["g.ron -> ", "g.ron:1:"]);
+    }
+    let desk = Desk::with(including("b.ron"));
+    desk.write("b.ron", including("g.ron"));
+    desk.go().refused(&["g.ron -> ", "b.ron -> ", "g.ron:1:"]);
+    #[cfg(unix)]
+    {
+        let desk = Desk::with(including("link.ron"));
+        std::os::unix::fs::symlink(desk.path("g.ron"), desk.path("link.ron")).expect("a link");
+        desk.go().refused(&["link.ron", "g.ron:1:"]);
+    }
+    // Where case does not count, this is the graph itself; elsewhere it is missing.
+    Desk::with(including("G.ron")).go().refused(&["G.ron"]);
+}
+
+#[test]
+fn f028_includes_that_multiply() {
+    use std::fmt::Write as _;
+    let desk = Desk::with(including("l0.ron"));
+    for level in 0..10 {
+        let mut nodes = String::from("\"out\": Grid()");
+        for k in 0..10 {
+            let _ = write!(nodes, ", \"n{k}\": Subgraph(path: \"l{}.ron\")", level + 1);
+        }
+        let text = format!("Graph(version: 1, nodes: {{{nodes}}}, results: {{\"out\": \"out\"}})");
+        desk.write(&format!("l{level}.ron"), text);
+    }
+    desk.write(
+        "l10.ron",
+        "Graph(version: 1, nodes: {\"out\": Grid()}, results: {\"out\": \"out\"})",
+    );
+    // Seconds on an idle machine.
+    desk.go()
+        .refused(&["more than 10000 graphs"])
+        .within(60 * SECOND);
+}
+
+#[test]
+fn f029_includes_from_outside() {
+    for path in ["../../etc/passwd", "/etc/passwd", "../x.ron"] {
+        let desk = Desk::with(including(path));
+        desk.go().refused(&[path, "g.ron:1:"]);
+    }
+}
+
 #[test]
 fn f030_outputs_that_must_not_be_written() {
     let node = "\"out\": Grid()";
