@@ -66,3 +66,6 @@ impl Monitor for Quiet<'_> {
         self.0.memory_left()
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -82,7 +82,7 @@ pub fn vertex_normals(
     monitor: &dyn Monitor,
 ) -> Result<Vec<DVec3>, GeometryError> {
     let area_vectors = face_area_vectors(mesh, monitor)?;
-    let adjacency = mesh.topology().adjacency();
+    let adjacency = mesh.topology().adjacency_with(monitor)?;
     parallel::map(mesh.vertex_count(), monitor, |vertex| {
         let mut sum = DVec3::ZERO;
         for &corner in adjacency.vertex_corners(vertex) {

@@ -56,6 +56,7 @@ pub fn offset_mesh(
 ) -> Result<Mesh, GeometryError> {
     directions.check(base)?;
     check_thickness(base, outward, inward)?;
+    base.topology().adjacency_with(monitor)?;
     base.topology().check_manifold()?;
     base.topology().check_oriented()?;
     let (corner_vertex, sources) = base.topology().split_fans(|_| true);

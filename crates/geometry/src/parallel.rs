@@ -53,6 +53,82 @@ where
         })
 }
 
+/// Calls `f(i)` for `i` in `0..count` one after the other: for work whose steps
+/// need each other, that must stop all the same.
+///
+/// # Errors
+/// [`GeometryError::Cancelled`] when `monitor` asks to stop.
+pub(crate) fn in_order(
+    count: usize,
+    monitor: &dyn Monitor,
+    mut f: impl FnMut(usize),
+) -> Result<(), GeometryError> {
+    for start in (0..count).step_by(CHUNK) {
+        monitor.check()?;
+        (start..(start + CHUNK).min(count)).for_each(&mut f);
+    }
+    Ok(())
+}
+
+/// Sorts by `key`, in parallel: chunks, then pairs of runs until one is left.
+/// Equal keys keep their order. Cost: O(count · log count).
+///
+/// # Errors
+/// [`GeometryError::Cancelled`] when `monitor` asks to stop; `items` is then
+/// in any order.
+pub(crate) fn sort_by_key<T, K>(
+    items: &mut Vec<T>,
+    monitor: &dyn Monitor,
+    key: impl Fn(&T) -> K + Sync,
+) -> Result<(), GeometryError>
+where
+    T: Copy + Send + Sync,
+    K: Ord,
+{
+    items.par_chunks_mut(CHUNK).try_for_each(|run| {
+        monitor.check()?;
+        run.sort_by_key(&key);
+        Ok(())
+    })?;
+    let mut merged = items.clone();
+    let mut length = CHUNK;
+    while length < items.len() {
+        let pairs = items.par_chunks(2 * length);
+        let slots = merged.par_chunks_mut(2 * length);
+        pairs.zip(slots).try_for_each(|(pair, slots)| {
+            let (left, right) = pair.split_at(length.min(pair.len()));
+            merge(left, right, slots, monitor, &key)
+        })?;
+        std::mem::swap(items, &mut merged);
+        length *= 2;
+    }
+    Ok(())
+}
+
+/// Two sorted runs as one; of equal items those of the left one first.
+fn merge<'a, T: Copy, K: Ord>(
+    mut left: &'a [T],
+    mut right: &'a [T],
+    out: &mut [T],
+    monitor: &dyn Monitor,
+    key: impl Fn(&T) -> K,
+) -> Result<(), GeometryError> {
+    for slots in out.chunks_mut(CHUNK) {
+        monitor.check()?;
+        for slot in slots {
+            let from = match (left.first(), right.first()) {
+                (Some(a), Some(b)) if key(b) < key(a) => &mut right,
+                (Some(_), _) => &mut left,
+                (None, _) => &mut right,
+            };
+            if let Some((first, rest)) = from.split_first() {
+                (*slot, *from) = (*first, rest);
+            }
+        }
+    }
+    Ok(())
+}
+
 /// `count` zero values, in pages the system hands out zeroed: the threads that
 /// write them touch them first, which on large arrays is most of the cost.
 pub fn zeroed<T: Zeroable>(count: usize) -> Vec<T> {

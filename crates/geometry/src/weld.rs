@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use crate::parallel::in_order;
 use crate::rebuild::{Sources, rebuild, renumber};
 use crate::{GeometryError, Mesh, Monitor, Topology, parallel};
 
@@ -55,7 +56,8 @@ pub fn weld_vertices(
             requirement: "it must be finite and not negative",
         });
     }
-    merge_vertices(mesh, &clusters(mesh.positions(), distance), monitor)
+    let target = clusters(mesh.positions(), distance, monitor)?;
+    merge_vertices(mesh, &target, monitor)
 }
 
 /// Joins every vertex to `target[vertex]`, which must be its own target and not
@@ -146,7 +148,14 @@ fn kept_corners(face: &[u32], renamed: impl Fn(u32) -> u32) -> impl Iterator<Ite
 
 /// For each position the lowest index of its cluster: the transitive closure of
 /// all pairs within `distance`.
-pub(crate) fn clusters(positions: &[DVec3], distance: f64) -> Vec<u32> {
+///
+/// # Errors
+/// [`GeometryError::Cancelled`].
+pub(crate) fn clusters(
+    positions: &[DVec3],
+    distance: f64,
+    monitor: &dyn Monitor,
+) -> Result<Vec<u32>, GeometryError> {
     let mut sets = Sets::new(positions.len());
     let mut order: Vec<u32> = (0..positions.len() as u32).collect();
     let key = |&i: &u32| {
@@ -154,32 +163,44 @@ pub(crate) fn clusters(positions: &[DVec3], distance: f64) -> Vec<u32> {
         let p = positions[i as usize] + DVec3::ZERO;
         (p.to_array().map(f64::to_bits), i)
     };
-    order.sort_unstable_by_key(key);
-    for run in order.chunk_by(|a, b| key(a).0 == key(b).0) {
-        for &i in &run[1..] {
-            sets.join(run[0], i);
+    parallel::sort_by_key(&mut order, monitor, key)?;
+    // Equal places follow each other, the lowest index first.
+    in_order(order.len().saturating_sub(1), monitor, |at| {
+        if key(&order[at]).0 == key(&order[at + 1]).0 {
+            sets.join(order[at], order[at + 1]);
         }
-    }
+    })?;
     if distance > 0.0 {
-        join_near(positions, distance, &mut sets);
+        join_near(positions, distance, &mut sets, monitor)?;
     }
-    (0..positions.len() as u32).map(|i| sets.root(i)).collect()
+    let mut lowest = vec![0; positions.len()];
+    in_order(positions.len(), monitor, |i| {
+        lowest[i] = sets.root(i as u32);
+    })?;
+    Ok(lowest)
 }
 
 /// Joins all pairs within `distance` by a grid whose cells are so small that
 /// all points of one cell belong together.
-fn join_near(positions: &[DVec3], distance: f64, sets: &mut Sets) {
+fn join_near(
+    positions: &[DVec3],
+    distance: f64,
+    sets: &mut Sets,
+    monitor: &dyn Monitor,
+) -> Result<(), GeometryError> {
     let Some(low) = positions.iter().copied().reduce(DVec3::min) else {
-        return;
+        return Ok(());
     };
     // Below 1/sqrt(3): the cell's diagonal is shorter than the distance.
     let side = distance * 0.577;
     let cell_of = |p: DVec3| ((p - low) / side).floor().to_array().map(|x| x as i64);
-    let mut points: Vec<([i64; 3], u32)> = (0..positions.len() as u32)
-        .filter(|&i| sets.root(i) == i)
-        .map(|i| (cell_of(positions[i as usize]), i))
-        .collect();
-    points.sort_unstable();
+    let mut points: Vec<([i64; 3], u32)> = Vec::new();
+    in_order(positions.len(), monitor, |i| {
+        if sets.root(i as u32) == i as u32 {
+            points.push((cell_of(positions[i]), i as u32));
+        }
+    })?;
+    parallel::sort_by_key(&mut points, monitor, |&point| point)?;
     let cells: Vec<&[([i64; 3], u32)]> = points.chunk_by(|a, b| a.0 == b.0).collect();
     for cell in &cells {
         for point in &cell[1..] {
@@ -197,7 +218,8 @@ fn join_near(positions: &[DVec3], distance: f64, sets: &mut Sets) {
         // The column of cells to look at moves on with the cell, so one cursor
         // per column passes over all cells once.
         let mut cursor = 0;
-        for cell in &cells {
+        in_order(cells.len(), monitor, |index| {
+            let cell = cells[index];
             let at = |z: i64| {
                 let [cx, cy, cz] = cell[0].0;
                 [
@@ -218,8 +240,9 @@ fn join_near(positions: &[DVec3], distance: f64, sets: &mut Sets) {
                     sets.join(cell[0].1, other[0].1);
                 }
             }
-        }
+        })?;
     }
+    Ok(())
 }
 
 /// Half of the columns that a cell of side 0.577 can have neighbours in.
@@ -291,14 +314,14 @@ mod tests {
                 .iter()
                 .map(|p| DVec3::new(f64::from(p[0]), f64::from(p[1]), f64::from(p[2])) * 0.125)
                 .collect();
-            prop_assert_eq!(clusters(&positions, distance), brute(&positions, distance));
+            prop_assert_eq!(clusters(&positions, distance, &Unmonitored).unwrap(), brute(&positions, distance));
         }
     }
 
     #[test]
     fn negative_zero_is_zero() {
         let places = [DVec3::new(0.0, 1.0, 0.0), DVec3::new(-0.0, 1.0, -0.0)];
-        assert_eq!(clusters(&places, 0.0), [0, 0]);
+        assert_eq!(clusters(&places, 0.0, &Unmonitored).unwrap(), [0, 0]);
     }
 
     #[test]

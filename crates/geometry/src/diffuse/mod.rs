@@ -134,6 +134,7 @@ pub fn diffuse(
     monitor: &dyn Monitor,
 ) -> Result<Directions, GeometryError> {
     check(mesh, start, options)?;
+    mesh.topology().adjacency_with(monitor)?;
     let cones = if options.keep_side {
         Some(Cones::new(mesh, monitor)?)
     } else {

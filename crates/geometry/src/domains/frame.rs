@@ -134,6 +134,7 @@ pub fn frame_faces(
     monitor: &dyn Monitor,
 ) -> Result<Framed, GeometryError> {
     check_per_face("chosen", mesh, chosen.len())?;
+    mesh.topology().adjacency_with(monitor)?;
     let insets = Insets::new(mesh, options, monitor)?;
     let frames =
         |face: usize| chosen[face] && !(options.preserve_quads && mesh.face(face).len() == 4);

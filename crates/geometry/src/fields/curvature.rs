@@ -5,6 +5,7 @@ use glam::DVec3;
 use crate::math::{PI, angle_between};
 use crate::mesh::Domain;
 use crate::normals::{NormalWeights, vertex_normals};
+use crate::parallel::in_order;
 use crate::{Field, GeometryError, Mesh, Monitor, Quantity};
 
 /// Which curvature.
@@ -48,7 +49,8 @@ pub fn curvature(
     kind: Curvature,
     monitor: &dyn Monitor,
 ) -> Result<Field, GeometryError> {
-    let rings = rings(mesh);
+    mesh.topology().adjacency_with(monitor)?;
+    let rings = rings(mesh, monitor)?;
     let normals = vertex_normals(mesh, NormalWeights::Angle, true, monitor)?;
     let adjacency = mesh.topology().adjacency();
     let inner = |vertex: usize| {
@@ -91,13 +93,15 @@ pub fn curvature(
     Field::new(Domain::Vertex, Quantity::Number, values)
 }
 
-fn rings(mesh: &Mesh) -> Vec<Ring> {
+fn rings(mesh: &Mesh, monitor: &dyn Monitor) -> Result<Vec<Ring>, GeometryError> {
     let mut rings = vec![Ring::default(); mesh.vertex_count()];
-    for triangle in mesh.triangle_vertices(&mesh.triangles()) {
+    let triangles = mesh.triangle_vertices(&mesh.triangles_with(monitor)?);
+    in_order(triangles.len(), monitor, |index| {
+        let triangle = triangles[index];
         let at = triangle.map(|vertex| mesh.positions()[vertex as usize]);
         let area2 = (at[1] - at[0]).cross(at[2] - at[0]).length();
         if area2 <= 0.0 {
-            continue;
+            return;
         }
         for k in 0..3 {
             let (here, next, last) = (at[k], at[(k + 1) % 3], at[(k + 2) % 3]);
@@ -110,8 +114,8 @@ fn rings(mesh: &Mesh) -> Vec<Ring> {
             let cot_next = (here - next).dot(last - next) / area2;
             ring.pull += (next - here) * cot_last + (last - here) * cot_next;
         }
-    }
-    rings
+    })?;
+    Ok(rings)
 }
 
 #[cfg(test)]
@@ -131,7 +135,7 @@ mod tests {
     #[test]
     fn total_gauss_curvature_is_that_of_the_topology() {
         for (mesh, expected) in [(sphere(24, 12), 4.0 * PI), (torus(24, 12, 3.0, 1.0), 0.0)] {
-            let rings = rings(&mesh);
+            let rings = rings(&mesh, &Unmonitored).unwrap();
             let gauss = of(&mesh, Curvature::Gauss);
             let total: f64 = gauss
                 .iter()

@@ -14,6 +14,7 @@ use rayon::prelude::*;
 use crate::array::PANEL;
 use crate::measure::pieces_of_faces;
 use crate::mesh::{AttributeValues, Domain};
+use crate::parallel::{self, in_order};
 use crate::surface::BoxTree;
 use crate::weld::clusters;
 use crate::{Field, GeometryError, Mesh, Monitor, Quantity};
@@ -111,7 +112,7 @@ pub fn intersections(
 ) -> Result<Intersections, GeometryError> {
     let tolerance = options.tolerance.unwrap_or(mesh.diagonal() * TOLERANCE);
     check(mesh, tolerance)?;
-    let (component, components) = components(mesh);
+    let (component, components) = components(mesh, monitor)?;
     let mut found = Found::default();
     if mesh.face_count() > 0 {
         let wanted = |a: u32, b: u32| {
@@ -173,22 +174,28 @@ fn check(mesh: &Mesh, tolerance: f64) -> Result<(), GeometryError> {
 
 /// The component of each face, numbered by first face, and how many there are:
 /// the panels of face attribute [`PANEL`], else the connected pieces.
-pub(crate) fn components(mesh: &Mesh) -> (Vec<u32>, usize) {
+///
+/// # Errors
+/// [`GeometryError::Cancelled`].
+pub(crate) fn components(
+    mesh: &Mesh,
+    monitor: &dyn Monitor,
+) -> Result<(Vec<u32>, usize), GeometryError> {
     let panels = mesh.attribute(PANEL, Domain::Face).map(|a| a.values());
     let names: Vec<i64> = match panels {
         Some(AttributeValues::Integer(panels)) => panels.to_vec(),
-        _ => pieces_of_faces(mesh.topology())
+        _ => pieces_of_faces(mesh.topology(), monitor)?
             .into_iter()
             .map(i64::from)
             .collect(),
     };
-    number(&names)
+    number(&names, monitor)
 }
 
 /// Equal names as equal numbers, from 0 in the order they first occur.
-fn number(names: &[i64]) -> (Vec<u32>, usize) {
+fn number(names: &[i64], monitor: &dyn Monitor) -> Result<(Vec<u32>, usize), GeometryError> {
     let mut order: Vec<u32> = (0..names.len() as u32).collect();
-    order.sort_unstable_by_key(|&index| (names[index as usize], index));
+    parallel::sort_by_key(&mut order, monitor, |&index| (names[index as usize], index))?;
     let mut first = vec![0; names.len()];
     for run in order.chunk_by(|&a, &b| names[a as usize] == names[b as usize]) {
         for &index in run {
@@ -197,15 +204,15 @@ fn number(names: &[i64]) -> (Vec<u32>, usize) {
     }
     let mut numbers = vec![0; names.len()];
     let mut count = 0;
-    for index in 0..names.len() {
+    in_order(names.len(), monitor, |index| {
         if first[index] as usize == index {
             numbers[index] = count;
             count += 1;
         } else {
             numbers[index] = numbers[first[index] as usize];
         }
-    }
-    (numbers, count as usize)
+    })?;
+    Ok((numbers, count as usize))
 }
 
 /// Pairs by relation.
@@ -222,8 +229,8 @@ fn search(
     tolerance: f64,
     monitor: &dyn Monitor,
 ) -> Result<Found, GeometryError> {
-    let places = clusters(mesh.positions(), 0.0);
-    let tree = BoxTree::new(face_boxes(mesh), monitor)?;
+    let places = clusters(mesh.positions(), 0.0, monitor)?;
+    let tree = BoxTree::new(face_boxes(mesh, monitor)?, monitor)?;
     let total = mesh.face_count();
     let done = AtomicU64::new(0);
     let chunks: Vec<Found> = (0..total.div_ceil(FACES))
@@ -261,13 +268,12 @@ fn search(
 }
 
 /// Lowest and highest corner of each face.
-fn face_boxes(mesh: &Mesh) -> Vec<[DVec3; 2]> {
-    let of_face = |face: &[u32]| {
+fn face_boxes(mesh: &Mesh, monitor: &dyn Monitor) -> Result<Vec<[DVec3; 2]>, GeometryError> {
+    parallel::map(mesh.face_count(), monitor, |face| {
         let none = [DVec3::INFINITY, DVec3::NEG_INFINITY];
-        face.iter().fold(none, |[low, high], &vertex| {
+        mesh.face(face).iter().fold(none, |[low, high], &vertex| {
             let place = mesh.positions()[vertex as usize];
             [low.min(place), high.max(place)]
         })
-    };
-    mesh.topology().faces().map(of_face).collect()
+    })
 }

@@ -54,7 +54,7 @@ pub fn distortion(
     monitor: &dyn Monitor,
 ) -> Result<Distortion, GeometryError> {
     let originals = originals(mesh, component)?;
-    let (of_face, count) = components(mesh);
+    let (of_face, count) = components(mesh, monitor)?;
     let mut sums = vec![Sums::default(); count];
     for (face, &original) in originals.iter().enumerate() {
         let (after, before) = (corners(mesh, face), corners(component, original));

@@ -3,7 +3,8 @@
 use glam::DVec3;
 
 use super::defects::{Defects, Found, find_defects};
-use crate::{Mesh, Topology, parallel};
+use crate::parallel::{self, in_order};
+use crate::{GeometryError, Mesh, Monitor, Topology};
 
 /// What there is to say about a mesh in numbers; see [`measure_mesh`].
 #[derive(Debug, Clone, PartialEq)]
@@ -124,14 +125,25 @@ fn components(topology: &Topology) -> usize {
 
 /// The piece of each face, as the lowest vertex of the piece: faces with a vertex
 /// in common are of one piece. Cost: O(corners).
-pub(crate) fn pieces_of_faces(topology: &Topology) -> Vec<u32> {
+///
+/// # Errors
+/// [`GeometryError::Cancelled`].
+pub(crate) fn pieces_of_faces(
+    topology: &Topology,
+    monitor: &dyn Monitor,
+) -> Result<Vec<u32>, GeometryError> {
     let mut sets = Sets::new(topology.vertex_count());
-    for face in topology.faces() {
+    in_order(topology.face_count(), monitor, |index| {
+        let face = topology.face(index);
         for &vertex in &face[1..] {
             sets.join(face[0], vertex);
         }
-    }
-    topology.faces().map(|face| sets.root(face[0])).collect()
+    })?;
+    let mut pieces = vec![0; topology.face_count()];
+    in_order(pieces.len(), monitor, |index| {
+        pieces[index] = sets.root(topology.face(index)[0]);
+    })?;
+    Ok(pieces)
 }
 
 /// Pieces of boundary edges, joined at their vertices.

@@ -104,7 +104,7 @@ pub fn panels(
     base: Option<&PanelBase<'_>>,
     monitor: &dyn Monitor,
 ) -> Result<Vec<Panel>, GeometryError> {
-    let (of_face, count) = components(mesh);
+    let (of_face, count) = components(mesh, monitor)?;
     let mut gathered: Vec<Gathered> = Vec::with_capacity(count);
     for (face, &panel) in of_face.iter().enumerate() {
         if panel as usize == gathered.len() {

@@ -101,7 +101,7 @@ pub fn measure_thickness(
     check(mesh, wanted, options.bins)?;
     let positions = mesh.positions();
     let found = base.distances(positions, options.border, monitor)?;
-    let adjacency = mesh.topology().adjacency();
+    let adjacency = mesh.topology().adjacency_with(monitor)?;
     let is_used =
         |vertex: usize| mesh.face_count() == 0 || !adjacency.vertex_corners(vertex).is_empty();
     let is_far = |vertex: usize| found[vertex].0 > options.ignore_below;

@@ -6,6 +6,8 @@ use glam::DVec3;
 
 use super::Mesh;
 use crate::normals::newell;
+use crate::parallel::in_order;
+use crate::{GeometryError, Monitor, Unmonitored};
 
 /// How often ear clipping looks at a corner of one face before it gives up: a
 /// second or two, hundreds of times what faces that people draw need.
@@ -30,13 +32,22 @@ impl Mesh {
     /// concave face of n corners, up to 2²⁸ looks at corners: the rest of a face
     /// that takes more, one of tens of thousands of corners, is a fan.
     pub fn triangles(&self) -> Triangles {
+        self.triangles_with(&Unmonitored)
+            .expect("only a monitor stops this")
+    }
+
+    /// [`Mesh::triangles`], for an operation that may be stopped.
+    ///
+    /// # Errors
+    /// [`GeometryError::Cancelled`] when `monitor` asks to stop.
+    pub fn triangles_with(&self, monitor: &dyn Monitor) -> Result<Triangles, GeometryError> {
         let count = self.corner_count().saturating_sub(2 * self.face_count());
         let mut out = Triangles {
             corners: Vec::with_capacity(count),
             faces: Vec::with_capacity(count),
         };
         let mut ears = Vec::new();
-        for face in 0..self.face_count() {
+        in_order(self.face_count(), monitor, |face| {
             let start = self.topology().corner_range(face).start as u32;
             let vertices = self.face(face);
             let fan = |k: usize| [start, start + k as u32, start + k as u32 + 1];
@@ -53,8 +64,8 @@ impl Mesh {
                 }
             }
             out.faces.resize(out.corners.len(), face as u32);
-        }
-        out
+        })?;
+        Ok(out)
     }
 
     /// The vertices of each triangle of [`Mesh::triangles`].

@@ -136,6 +136,7 @@ pub fn subdivide(
             requirement: "it must lie in 0 to 8",
         });
     }
+    mesh.topology().adjacency_with(monitor)?;
     let counts = subdivided_counts(mesh, options.levels)?;
     monitor.afford(counts.bytes)?;
     let refiner = Refiner::new(mesh, options, monitor)?;

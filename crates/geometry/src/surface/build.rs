@@ -5,6 +5,7 @@ use glam::DVec3;
 use super::leaf::{Leaf, WIDTH};
 use super::node::{EMPTY, LEAF, Node};
 use super::triangle::Triangle;
+use crate::parallel::{CHUNK, in_order};
 use crate::{GeometryError, Monitor};
 
 /// Bins along the axis of a split (Wald 2007); more gain nothing measurable.
@@ -102,19 +103,20 @@ pub(super) fn build(
     corners: impl Fn(u32) -> Triangle + Sync,
     monitor: &dyn Monitor,
 ) -> Result<Tree, GeometryError> {
-    let mut items: Vec<Item> = (0..count as u32)
-        .map(|k| Item::new(k, corners(k)))
-        .collect();
+    let mut items = Vec::with_capacity(count);
+    in_order(count, monitor, |k| {
+        items.push(Item::new(k as u32, corners(k as u32)));
+    })?;
     let binary = grow_parallel(&mut items, 0, 0, monitor)?;
-    monitor.check()?;
     let mut widen = Widen {
         binary: &binary,
         items: &items,
         corners: &corners,
+        monitor,
         nodes: Vec::with_capacity(binary.len() / 4),
         leaves: Vec::with_capacity(binary.len() / 2 + 1),
     };
-    let root = widen.reference(0);
+    let root = widen.reference(0)?;
     Ok(Tree {
         root,
         nodes: widen.nodes,
@@ -136,6 +138,7 @@ fn grow_parallel(
         return Ok(nodes);
     }
     let bounds = bounds_of(items);
+    monitor.check()?;
     let at = split(items, depth);
     let (left, right) = items.split_at_mut(at);
     let (left, right) = rayon::join(
@@ -270,29 +273,33 @@ struct Widen<'a, F> {
     binary: &'a [Binary],
     items: &'a [Item],
     corners: &'a F,
+    monitor: &'a dyn Monitor,
     nodes: Vec<Node>,
     leaves: Vec<Leaf>,
 }
 
 impl<F: Fn(u32) -> Triangle> Widen<'_, F> {
     /// Adds the subtree under binary node `at`; says how to refer to it.
-    fn reference(&mut self, at: u32) -> u32 {
+    fn reference(&mut self, at: u32) -> Result<u32, GeometryError> {
         let node = self.binary[at as usize];
         if node.count > 0 {
             let items = &self.items[node.first as usize..][..node.count as usize];
             let triangles = std::array::from_fn(|k| items[k.min(items.len() - 1)].triangle);
             self.leaves.push(Leaf::new(triangles, self.corners));
-            return LEAF | (self.leaves.len() - 1) as u32;
+            if self.leaves.len().is_multiple_of(CHUNK) {
+                self.monitor.check()?;
+            }
+            return Ok(LEAF | (self.leaves.len() - 1) as u32);
         }
         let here = self.nodes.len();
         self.nodes.push(Node::default());
         let (children, count) = self.gather(node);
         for (slot, &child) in children.iter().enumerate().take(count) {
-            let reference = self.reference(child);
+            let reference = self.reference(child)?;
             let bounds = self.binary[child as usize].bounds;
             self.nodes[here].set(slot, bounds, reference);
         }
-        here as u32
+        Ok(here as u32)
     }
 
     /// Up to four descendants of `node`: its children, then of those the one

@@ -88,7 +88,9 @@ impl Surface {
                 requirement: "squares of distances need it below 1e150",
             });
         }
-        let triangles = mesh.triangles();
+        // Asked for by closest places, which are found inside loops.
+        mesh.topology().adjacency_with(monitor)?;
+        let triangles = mesh.triangles_with(monitor)?;
         let count = triangles.corners.len();
         if count == 0 {
             return Err(GeometryError::Empty {

@@ -1,6 +1,8 @@
 //! Edges and one-rings, in compressed rows.
 
 use super::Topology;
+use crate::parallel::in_order;
+use crate::{GeometryError, Monitor};
 
 /// Marks a corner whose outgoing edge joins a vertex to itself.
 pub const NO_EDGE: u32 = u32::MAX;
@@ -27,22 +29,30 @@ struct Rows {
 }
 
 impl Rows {
-    /// Sorts items into rows, stable in the order of `pairs` of (row, item).
-    fn gather(count: usize, pairs: impl Iterator<Item = (u32, u32)> + Clone) -> Self {
+    /// Sorts items into rows, stable in the order of `places` that `pair` gives
+    /// a (row, item) for.
+    fn gather(
+        count: usize,
+        places: usize,
+        monitor: &dyn Monitor,
+        pair: impl Fn(usize) -> Option<(u32, u32)>,
+    ) -> Result<Self, GeometryError> {
         let mut offsets = vec![0u32; count + 1];
-        for (row, _) in pairs.clone() {
-            offsets[row as usize + 1] += 1;
-        }
-        for row in 0..count {
-            offsets[row + 1] += offsets[row];
-        }
+        in_order(places, monitor, |place| {
+            if let Some((row, _)) = pair(place) {
+                offsets[row as usize + 1] += 1;
+            }
+        })?;
+        in_order(count, monitor, |row| offsets[row + 1] += offsets[row])?;
         let mut next = offsets.clone();
         let mut items = vec![0; offsets[count] as usize];
-        for (row, item) in pairs {
-            items[next[row as usize] as usize] = item;
-            next[row as usize] += 1;
-        }
-        Self { offsets, items }
+        in_order(places, monitor, |place| {
+            if let Some((row, item)) = pair(place) {
+                items[next[row as usize] as usize] = item;
+                next[row as usize] += 1;
+            }
+        })?;
+        Ok(Self { offsets, items })
     }
 
     fn row(&self, row: usize) -> &[u32] {
@@ -51,39 +61,36 @@ impl Rows {
 }
 
 impl Adjacency {
-    pub(super) fn new(topology: &Topology) -> Self {
+    pub(super) fn new(topology: &Topology, monitor: &dyn Monitor) -> Result<Self, GeometryError> {
         let corners = topology.corners();
         let mut corner_face = Vec::with_capacity(corners.len());
         let mut next = Vec::with_capacity(corners.len());
-        for (index, face) in topology.faces().enumerate() {
+        in_order(topology.face_count(), monitor, |index| {
+            let face = topology.face(index);
             corner_face.extend(std::iter::repeat_n(index as u32, face.len()));
             next.extend_from_slice(&face[1..]);
             next.push(face[0]);
-        }
-        let (edges, corner_edge) = number_edges(topology.vertex_count(), corners, &next);
-        let leaving = corner_edge
-            .iter()
-            .zip(0u32..)
-            .filter(|&(&edge, _)| edge != NO_EDGE);
-        let edge_corners = Rows::gather(edges.len(), leaving.map(|(&edge, corner)| (edge, corner)));
-        let at = corners
-            .iter()
-            .zip(0u32..)
-            .map(|(&vertex, corner)| (vertex, corner));
-        let vertex_corners = Rows::gather(topology.vertex_count(), at);
-        let ends = edges
-            .iter()
-            .zip(0u32..)
-            .flat_map(|(&[a, b], edge)| [(a, edge), (b, edge)]);
-        let vertex_edges = Rows::gather(topology.vertex_count(), ends);
-        Self {
+        })?;
+        let vertices = topology.vertex_count();
+        let (edges, corner_edge) = number_edges(vertices, corners, &next, monitor)?;
+        let edge_corners = Rows::gather(edges.len(), corners.len(), monitor, |corner| {
+            let edge = corner_edge[corner];
+            (edge != NO_EDGE).then_some((edge, corner as u32))
+        })?;
+        let vertex_corners = Rows::gather(vertices, corners.len(), monitor, |corner| {
+            Some((corners[corner], corner as u32))
+        })?;
+        let vertex_edges = Rows::gather(vertices, 2 * edges.len(), monitor, |end| {
+            Some((edges[end / 2][end % 2], (end / 2) as u32))
+        })?;
+        Ok(Self {
             edges,
             corner_edge,
             corner_face,
             edge_corners,
             vertex_corners,
             vertex_edges,
-        }
+        })
     }
 
     /// How many edges there are.
@@ -167,15 +174,19 @@ impl Adjacency {
 ///
 /// Corners are bucketed by their edge's lower vertex and sorted within the
 /// bucket by the upper one, so the cost is O(corners · log valence).
-fn number_edges(vertex_count: usize, from: &[u32], to: &[u32]) -> (Vec<[u32; 2]>, Vec<u32>) {
-    let directed = from.iter().zip(to).zip(0u32..).filter(|((a, b), _)| a != b);
-    let mut buckets = Rows::gather(
-        vertex_count,
-        directed.map(|((&a, &b), corner)| (a.min(b), corner)),
-    );
+fn number_edges(
+    vertex_count: usize,
+    from: &[u32],
+    to: &[u32],
+    monitor: &dyn Monitor,
+) -> Result<(Vec<[u32; 2]>, Vec<u32>), GeometryError> {
+    let mut buckets = Rows::gather(vertex_count, from.len(), monitor, |corner| {
+        let (a, b) = (from[corner], to[corner]);
+        (a != b).then_some((a.min(b), corner as u32))
+    })?;
     let upper = |corner: u32| from[corner as usize].max(to[corner as usize]);
     let mut first_corner = vec![NO_EDGE; from.len()];
-    for vertex in 0..vertex_count {
+    in_order(vertex_count, monitor, |vertex| {
         let bounds = buckets.offsets[vertex] as usize..buckets.offsets[vertex + 1] as usize;
         let bucket = &mut buckets.items[bounds];
         bucket.sort_unstable_by_key(|&corner| (upper(corner), corner));
@@ -184,18 +195,16 @@ fn number_edges(vertex_count: usize, from: &[u32], to: &[u32]) -> (Vec<[u32; 2]>
                 first_corner[corner as usize] = run[0];
             }
         }
-    }
+    })?;
     let mut edges = Vec::new();
     let mut corner_edge = vec![NO_EDGE; from.len()];
-    for corner in 0..from.len() {
-        match first_corner[corner] {
-            NO_EDGE => {}
-            first if first as usize == corner => {
-                corner_edge[corner] = edges.len() as u32;
-                edges.push([from[corner], to[corner]]);
-            }
-            first => corner_edge[corner] = corner_edge[first as usize],
+    in_order(from.len(), monitor, |corner| match first_corner[corner] {
+        NO_EDGE => {}
+        first if first as usize == corner => {
+            corner_edge[corner] = edges.len() as u32;
+            edges.push([from[corner], to[corner]]);
         }
-    }
-    (edges, corner_edge)
+        first => corner_edge[corner] = corner_edge[first as usize],
+    })?;
+    Ok((edges, corner_edge))
 }

@@ -9,9 +9,9 @@ use std::sync::{Arc, OnceLock};
 pub use adjacency::{Adjacency, NO_EDGE};
 pub(crate) use boundary::{BoundaryWalk, next_in_face, previous_in_face, walks as boundary_walks};
 
-use crate::GeometryError;
 use crate::buffer::Buffer;
 use crate::digest::{Digest, Hasher};
+use crate::{GeometryError, Monitor, Unmonitored};
 
 /// The faces of a mesh as corners in compressed rows, with lazy adjacency.
 ///
@@ -145,7 +145,22 @@ impl Topology {
 
     /// Edges and one-rings. Cost: O(corners · log valence) once, then O(1).
     pub fn adjacency(&self) -> &Adjacency {
-        self.adjacency.get_or_init(|| Adjacency::new(self))
+        self.adjacency
+            .get_or_init(|| Adjacency::new(self, &Unmonitored).expect("only a monitor stops this"))
+    }
+
+    /// [`Topology::adjacency`] for an operation that may be stopped while it is
+    /// built: it asks for this first. A build that was stopped leaves nothing
+    /// behind; two threads that begin at once both build it, and one is kept.
+    ///
+    /// # Errors
+    /// [`GeometryError::Cancelled`] when `monitor` asks to stop.
+    pub fn adjacency_with(&self, monitor: &dyn Monitor) -> Result<&Adjacency, GeometryError> {
+        if let Some(adjacency) = self.adjacency.get() {
+            return Ok(adjacency);
+        }
+        let built = Adjacency::new(self, monitor)?;
+        Ok(self.adjacency.get_or_init(|| built))
     }
 
     /// Loops of boundary edges as closed lists of vertices, each walked with
