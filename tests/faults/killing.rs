@@ -18,9 +18,10 @@ const SLOW: &str = "Graph(version: 1, params: {\"t\": 0.1}, nodes: {
 /// Kills runs at moments spread over the time one takes.
 fn killed(times: u32) {
     let old = Desk::with(SLOW);
-    let start = Instant::now();
     old.go().made();
-    let whole = start.elapsed();
+    // The quickest of some runs, so that most kills find one still at work.
+    let runs = (0..5).map(|_| old.run(&["run", "g.ron", "--no-cache"]).took);
+    let whole = runs.min().expect("five runs");
     let new = Desk::with(SLOW);
     new.run(&["run", "g.ron", "--set", "t=0.2"]).made();
     let desk = Desk::with(SLOW);
