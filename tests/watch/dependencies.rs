@@ -57,6 +57,38 @@ fn a_mesh_is_followed_while_it_is_used() {
 }
 
 #[test]
+fn an_included_graph_is_followed_also_when_it_is_broken_or_missing() {
+    let part = |cells: usize| {
+        format!(
+            "Graph(version: 1, nodes: {{\"grid\": Grid(cells: [{cells}, 1])}}, \
+             results: {{\"mesh\": \"grid\"}})"
+        )
+    };
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| folder.path().join(name);
+    write(
+        &at("g.ron"),
+        "Graph(version: 1, nodes: {\"part\": Subgraph(path: \"parts/a.ron\"), \
+         \"size\": MeasureMesh(mesh: \"part\")}, outputs: {\"size.json\": \"size\"})",
+    );
+    fs::create_dir(at("parts")).expect("a folder");
+    write(&at("parts/a.ron"), &part(3));
+    let watch = Watch::start(folder.path(), &[]);
+    watch.until_faces(3);
+    write(&at("parts/a.ron"), &part(4));
+    watch.until_faces(4);
+    write(&at("parts/a.ron"), "Graph(version: 1, nodes: {");
+    while watch.next()["ok"] == true {}
+    assert_eq!(watch.faces(), 4, "the last good output stays");
+    write(&at("parts/a.ron"), &part(5));
+    watch.until_faces(5);
+    fs::remove_file(at("parts/a.ron")).expect("removed");
+    while watch.next()["ok"] == true {}
+    write(&at("parts/a.ron"), &part(6));
+    watch.until_faces(6);
+}
+
+#[test]
 fn a_file_found_only_while_reading_is_followed_also_when_missing() {
     let with_library = |folder: &Path| {
         let text = format!("mtllib a.mtl\nusemtl red\n{}", strip(3));
