@@ -26,26 +26,18 @@ pub(crate) struct GraphFile {
     pub(crate) world: RecordingWorld,
 }
 
-/// What came of reading a graph file.
-pub(crate) struct Opened {
-    /// The graph, or everything that is wrong with it and the graphs it
-    /// includes.
-    pub(crate) file: Result<GraphFile, Vec<Diagnostic>>,
-    /// The graph file and all graphs it includes, as far as they were met, also
-    /// those that do not exist: what to look at for another result.
-    #[allow(dead_code, reason = "for watching a graph")]
-    pub(crate) sources: Vec<PathBuf>,
-}
-
 impl GraphFile {
     /// Reads and checks the graph at `path`, with parameters set as asked. Files
     /// outside its folder tree are read only below one of `allowed`.
+    ///
+    /// # Errors
+    /// Everything that is wrong with it and the graphs it includes.
     pub(crate) fn open(
         path: &Path,
         registry: &'static [NodeSpec],
         set: &[(String, String)],
         allowed: &[PathBuf],
-    ) -> Opened {
+    ) -> Result<Self, Vec<Diagnostic>> {
         Self::open_telling(path, registry, set, allowed, None)
     }
 
@@ -57,11 +49,7 @@ impl GraphFile {
         set: &[(String, String)],
         allowed: &[PathBuf],
         listener: Option<&Listener>,
-    ) -> Opened {
-        let failed = |diagnostics| Opened {
-            file: Err(diagnostics),
-            sources: vec![path.to_path_buf()],
-        };
+    ) -> Result<Self, Vec<Diagnostic>> {
         let name = path.to_string_lossy();
         let unreadable = |reason: String| {
             let message = format!("cannot read the graph: {reason}");
@@ -83,7 +71,7 @@ impl GraphFile {
         }
         let bytes = match read {
             Ok(bytes) => bytes,
-            Err(reason) => return failed(unreadable(reason)),
+            Err(reason) => return Err(unreadable(reason)),
         };
         let folder = folder_of(path);
         let world = match DiskWorld::new(&folder, allowed) {
@@ -91,21 +79,16 @@ impl GraphFile {
             Ok(disk) => {
                 RecordingWorld::new(disk.limited(memory::limit() / 2)).telling(listener, &folder)
             }
-            Err(error) => return failed(unreadable(error.to_string())),
+            Err(error) => return Err(unreadable(error.to_string())),
         };
         let options = LoadOptions { set: set.to_vec() };
         let loaded = load_with(&name, &bytes, registry, &options, &world);
-        let included = loaded.included.iter().map(|name| folder.join(name));
-        let sources = std::iter::once(path.to_path_buf())
-            .chain(included)
-            .collect();
-        let file = loaded.plan.map(|plan| Self {
+        loaded.plan.map(|plan| Self {
             plan,
             path: path.to_path_buf(),
             folder,
             world,
-        });
-        Opened { file, sources }
+        })
     }
 
     /// What tells this graph from others between runs.

@@ -63,7 +63,7 @@ pub(crate) fn check(args: &CheckArgs, cx: &mut Context<'_, '_>) -> u8 {
 
 /// How many nodes and outputs the graph has.
 fn examine(args: &CheckArgs, cx: &Context<'_, '_>) -> Result<(usize, usize), Vec<Diagnostic>> {
-    let file = GraphFile::open(&args.graph, cx.registry, &args.set, &args.allow).file?;
+    let file = GraphFile::open(&args.graph, cx.registry, &args.set, &args.allow)?;
     let outputs: Vec<&PlanOutput> = file.plan.outputs.iter().collect();
     let folders = Folders {
         graph: &file.folder,

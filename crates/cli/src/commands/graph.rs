@@ -44,7 +44,7 @@ enum PictureFormat {
 
 /// Carries the command out.
 pub(crate) fn graph(args: &GraphArgs, cx: &mut Context<'_, '_>) -> u8 {
-    let file = match GraphFile::open(&args.graph, cx.registry, &args.set, &args.allow).file {
+    let file = match GraphFile::open(&args.graph, cx.registry, &args.set, &args.allow) {
         Ok(file) => file,
         Err(diagnostics) => {
             print(cx.console, &diagnostics);

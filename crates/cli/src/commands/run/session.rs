@@ -134,7 +134,7 @@ impl<'a> Session<'a> {
                 let allow = &args.engine.allow;
                 GraphFile::open_telling(&args.graph, self.registry, set, allow, listener)
             });
-            let file = opened.file.map_err(Stopped::Graph)?;
+            let file = opened.map_err(Stopped::Graph)?;
             let targets = self.settle(&file)?;
             Ok(self.make(&file, &targets, live, phases, &control.stop))
         });
