@@ -48,6 +48,7 @@ fn dependencies_point_one_way() {
     let allowed = BTreeMap::from([
         ("tessgraph-geometry", vec![]),
         ("tessgraph-macros", vec![]),
+        ("tessgraph-pages", vec![]),
         ("tessgraph-io", vec!["tessgraph-geometry"]),
         ("tessgraph-graph", vec!["tessgraph-geometry"]),
         (
@@ -66,6 +67,7 @@ fn dependencies_point_one_way() {
                 "tessgraph-graph",
                 "tessgraph-io",
                 "tessgraph-nodes",
+                "tessgraph-pages",
             ],
         ),
     ]);

@@ -1,10 +1,12 @@
 //! An allocator that keeps the process within its memory limit.
 #![allow(unsafe_code, reason = "an allocator cannot be written without it")]
 
-use std::alloc::{GlobalAlloc, Layout, System};
+use std::alloc::{GlobalAlloc, Layout};
 use std::cell::Cell;
 use std::io::Write as _;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+
+use tessgraph_pages::LargePages;
 
 use super::meter;
 use crate::commands::FAILED;
@@ -20,7 +22,7 @@ static LIMIT: AtomicUsize = AtomicUsize::new(usize::MAX);
 /// Bytes that large pieces take now.
 static LIVE: AtomicUsize = AtomicUsize::new(0);
 
-/// The system's allocator with a limit.
+/// The system's allocator with large pages and a limit.
 ///
 /// What would pass the limit, or what the system refuses, ends the process in
 /// order: a message with the number of bytes and the nodes at work, temporary
@@ -87,32 +89,32 @@ fn checked(pointer: *mut u8, size: usize) -> *mut u8 {
     pointer
 }
 
-// SAFETY: every call goes to `System` with the arguments unchanged; what is
+// SAFETY: every call goes to `LargePages` with the arguments unchanged; what is
 // added counts bytes and may end the process, but never unwinds and never
 // touches the memory.
 unsafe impl GlobalAlloc for MemoryGuard {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         exchange(0, layout.size());
         // SAFETY: as the caller of this function promises.
-        checked(unsafe { System.alloc(layout) }, layout.size())
+        checked(unsafe { LargePages.alloc(layout) }, layout.size())
     }
 
     unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
         exchange(0, layout.size());
         // SAFETY: as the caller of this function promises.
-        checked(unsafe { System.alloc_zeroed(layout) }, layout.size())
+        checked(unsafe { LargePages.alloc_zeroed(layout) }, layout.size())
     }
 
     unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
         exchange(layout.size(), 0);
         // SAFETY: as the caller of this function promises.
-        unsafe { System.dealloc(pointer, layout) }
+        unsafe { LargePages.dealloc(pointer, layout) }
     }
 
     unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
         exchange(layout.size(), size);
         // SAFETY: as the caller of this function promises.
-        checked(unsafe { System.realloc(pointer, layout, size) }, size)
+        checked(unsafe { LargePages.realloc(pointer, layout, size) }, size)
     }
 }
 
