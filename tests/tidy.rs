@@ -49,6 +49,7 @@ fn dependencies_point_one_way() {
         ("tessgraph-geometry", vec![]),
         ("tessgraph-macros", vec![]),
         ("tessgraph-pages", vec![]),
+        ("tessgraph-bench", vec!["tessgraph-pages"]),
         ("tessgraph-io", vec!["tessgraph-geometry"]),
         ("tessgraph-graph", vec!["tessgraph-geometry"]),
         (

@@ -1,130 +1,104 @@
-//! Bytes per second of reading and writing, on one thread.
-//!
-//! `cargo bench -p tessgraph-io [-- NAME]`. The mesh is a wavy grid of
-//! 1 000 000 triangles; the best of several runs counts, in processor time
-//! where the system tells it. tobj reads the same OBJ bytes for comparison.
-#![expect(clippy::print_stdout, reason = "a benchmark prints its figures")]
+//! Reading and writing files, in bytes of the file.
 
-use std::hint::black_box;
-use std::time::Instant;
-
+use tessgraph_bench::{Bench, limits, shapes};
 use tessgraph_geometry::{Mesh, Unmonitored};
 use tessgraph_io::{
     Format, ReadOptions, no_files, read, write_glb, write_obj, write_ply, write_stl,
 };
 
-/// Best of `RUNS` runs.
-const RUNS: usize = 7;
-
-fn grid(size: u32, sides: usize) -> Mesh {
-    let place = |i: u32, j: u32| {
-        let (x, y) = (f64::from(i) * 0.013, f64::from(j) * 0.017);
-        // Six decimals, as most programs write them.
-        let z = ((x * y).fract() * 1e6).round() / 1e6;
-        [(x * 1e6).round() / 1e6, (y * 1e6).round() / 1e6, z]
-    };
-    let rows = (0..=size)
-        .flat_map(|i| (0..=size).map(move |j| place(i, j)))
-        .collect();
-    let mut faces: Vec<Vec<u32>> = Vec::new();
-    for i in 0..size {
-        for j in 0..size {
-            let at = |di: u32, dj: u32| (i + di) * (size + 1) + j + dj;
-            let quad = [at(0, 0), at(1, 0), at(1, 1), at(0, 1)];
-            if sides == 4 {
-                faces.push(quad.to_vec());
-            } else {
-                faces.push(vec![quad[0], quad[1], quad[2]]);
-                faces.push(vec![quad[0], quad[2], quad[3]]);
-            }
-        }
-    }
-    Mesh::from_faces(rows, &faces).expect("a grid is a mesh")
+/// Six decimals, as most programs write them.
+fn rounded(place: [f64; 3]) -> [f64; 3] {
+    place.map(|x| (x * 1e6).round() / 1e6)
 }
 
-/// Seconds this thread has run on a processor: other programs do not count.
-#[expect(clippy::disallowed_methods, reason = "a benchmark is no node")]
-fn processor_seconds() -> Option<f64> {
-    let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
-    Some(text.split(' ').next()?.parse::<f64>().ok()? * 1e-9)
+fn written(format: Format, mesh: &Mesh) -> Vec<u8> {
+    let monitor = &Unmonitored;
+    match format {
+        Format::Obj => write_obj(mesh, &Default::default(), monitor),
+        Format::Stl => write_stl(mesh, &Default::default(), monitor),
+        Format::Ply => write_ply(mesh, &Default::default(), monitor),
+        _ => write_glb(mesh, &Default::default(), monitor),
+    }
+    .expect("a mesh of finite places")
+    .bytes
 }
 
-fn measure<T>(what: &str, bytes: usize, mut run: impl FnMut() -> T) {
-    if std::env::args()
-        .skip(1)
-        .any(|name| !name.starts_with('-') && !what.contains(&name))
-    {
-        return;
-    }
-    let mut best = f64::INFINITY;
-    for _ in 0..RUNS {
-        let (start, before) = (Instant::now(), processor_seconds());
-        black_box(run());
-        let seconds = match (before, processor_seconds()) {
-            (Some(before), Some(after)) => after - before,
-            _ => start.elapsed().as_secs_f64(),
-        };
-        best = best.min(seconds);
-    }
-    let rate = bytes as f64 / best / 1e6;
-    println!(
-        "{what:<22} {:>7.1} MB  {:>8.1} ms  {rate:>7.0} MB/s",
-        bytes as f64 / 1e6,
-        best * 1e3
-    );
-}
-
-fn measure_read(format: Format, bytes: &[u8]) {
+fn parse(format: Format, bytes: &[u8]) -> Mesh {
     let options = ReadOptions::default();
-    measure(&format!("read {format}"), bytes.len(), || {
-        read(
-            format,
-            "bench",
-            bytes,
-            &mut no_files,
-            &options,
-            &Unmonitored,
-        )
-        .expect("it was written by us")
-    });
+    read(
+        format,
+        "bench",
+        bytes,
+        &mut no_files,
+        &options,
+        &Unmonitored,
+    )
+    .expect("it was written by us")
+    .mesh
+}
+
+/// What binary STL holds, in the form that stl_io writes.
+fn facets(mesh: &Mesh) -> Vec<stl_io::Triangle> {
+    let place = |v: u32| {
+        let p = mesh.positions()[v as usize];
+        stl_io::Vector::new(p.to_array().map(|x| x as f32))
+    };
+    let facet = |face: &[u32]| stl_io::Triangle {
+        normal: stl_io::Vector::new([0.0, 0.0, 1.0]),
+        vertices: [place(face[0]), place(face[1]), place(face[2])],
+    };
+    mesh.topology().faces().map(facet).collect()
 }
 
 fn main() {
-    let mesh = grid(707, 3);
-    let monitor = &Unmonitored;
-    let obj = write_obj(&mesh, &Default::default(), monitor)
-        .expect("OBJ")
-        .bytes;
-    let stl = write_stl(&mesh, &Default::default(), monitor)
-        .expect("STL")
-        .bytes;
-    let ply = write_ply(&mesh, &Default::default(), monitor)
-        .expect("PLY")
-        .bytes;
-    let glb = write_glb(&mesh, &Default::default(), monitor)
-        .expect("GLB")
-        .bytes;
-    println!("{} triangles", mesh.face_count());
-    measure_read(Format::Obj, &obj);
-    measure("read OBJ (tobj)", obj.len(), || {
-        let options = tobj::LoadOptions::default();
-        tobj::load_obj_buf(&mut obj.as_slice(), &options, |_| {
-            Err(tobj::LoadError::OpenFileFailed)
-        })
-    });
-    measure_read(Format::Stl, &stl);
-    measure_read(Format::Ply, &ply);
-    measure_read(Format::Glb, &glb);
-    measure("write OBJ", obj.len(), || {
-        write_obj(&mesh, &Default::default(), monitor)
-    });
-    measure("write STL", stl.len(), || {
-        write_stl(&mesh, &Default::default(), monitor)
-    });
-    measure("write PLY", ply.len(), || {
-        write_ply(&mesh, &Default::default(), monitor)
-    });
-    measure("write GLB", glb.len(), || {
-        write_glb(&mesh, &Default::default(), monitor)
-    });
+    let bench = Bench::new("Files of triangles; elements are bytes of the file");
+    for size in bench.sizes([177, 354, 707]) {
+        let (positions, faces) = shapes::sheet(size, size);
+        let positions = positions
+            .into_iter()
+            .map(|[x, y, z]| rounded([x * 0.013, y * 0.017, z * 0.05]));
+        let mesh = Mesh::from_faces(positions.collect(), &shapes::triangles(&faces));
+        let mesh = mesh.expect("a mesh");
+        let facets = facets(&mesh);
+        for format in [Format::Obj, Format::Stl, Format::Ply, Format::Glb] {
+            let bytes = written(format, &mesh);
+            let (read, write) = (format!("read {format}"), format!("write {format}"));
+            let mut case = bench
+                .case(&read, bytes.len(), "bytes")
+                .in_bytes()
+                .ours(|| (), |()| parse(format, &bytes));
+            case = match format {
+                Format::Obj => case
+                    .peer("tobj", || {
+                        let options = tobj::LoadOptions::default();
+                        tobj::load_obj_buf(&mut bytes.as_slice(), &options, |_| {
+                            Err(tobj::LoadError::OpenFileFailed)
+                        })
+                    })
+                    .limit("finding newlines", || {
+                        memchr::memchr_iter(b'\n', &bytes).count()
+                    }),
+                Format::Stl => case
+                    .peer("stl_io", || {
+                        let mut cursor = std::io::Cursor::new(&bytes);
+                        stl_io::read_stl(&mut cursor)
+                    })
+                    .limit("copying", limits::copy(bytes.len())),
+                _ => case.limit("copying", limits::copy(bytes.len())),
+            };
+            case.run();
+            let mut case = bench
+                .case(&write, bytes.len(), "bytes")
+                .in_bytes()
+                .ours(|| (), |()| written(format, &mesh));
+            if format == Format::Stl {
+                case = case.peer("stl_io", || {
+                    let mut out = std::io::Cursor::new(Vec::new());
+                    stl_io::write_stl(&mut out, facets.iter()).map(|()| out)
+                });
+            }
+            case.limit("first touch of the file", limits::first_touch(bytes.len()))
+                .run();
+        }
+    }
 }

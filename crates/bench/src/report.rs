@@ -1,0 +1,124 @@
+//! One line per case, in Markdown.
+#![expect(clippy::print_stdout, reason = "a benchmark prints its figures")]
+
+use std::time::Duration;
+
+use crate::case::{Best, Role};
+
+/// Prints the title and the head of the table.
+pub(crate) fn head(title: &str) {
+    println!("\n### {title}\n");
+    println!(
+        "| kernel | size | ns each | rate | bytes each | 2 threads: ns each, faster by | against peers | against the limit |"
+    );
+    println!("|---|---:|---:|---:|---:|---:|---|---|");
+}
+
+/// A line under way.
+pub(crate) struct Row<'a> {
+    kernel: &'a str,
+    count: usize,
+    unit: &'static str,
+    bytes_are_rate: bool,
+    ours: Option<(Best, Option<Best>)>,
+    others: Vec<(&'a str, Role, Best)>,
+}
+
+impl<'a> Row<'a> {
+    pub(crate) fn new(
+        kernel: &'a str,
+        count: usize,
+        unit: &'static str,
+        bytes_are_rate: bool,
+    ) -> Self {
+        Self {
+            kernel,
+            count,
+            unit,
+            bytes_are_rate,
+            ours: None,
+            others: Vec::new(),
+        }
+    }
+
+    pub(crate) fn add(&mut self, name: &'a str, role: Role, alone: Best, both: Option<Best>) {
+        if role == Role::Ours {
+            self.ours = Some((alone, both));
+        } else {
+            self.others.push((name, role, alone));
+        }
+    }
+
+    pub(crate) fn print(&self) {
+        let Some((alone, both)) = self.ours else {
+            return;
+        };
+        let each = |time: Duration| time.as_secs_f64() * 1e9 / self.count as f64;
+        let rate = self.count as f64 / alone.processor.as_secs_f64() / 1e6;
+        let (rate_unit, digits) = if self.bytes_are_rate {
+            ("MB/s", 0)
+        } else {
+            ("M/s", 2)
+        };
+        let two = both.map_or(String::new(), |both| {
+            let faster = alone.wall.as_secs_f64() / both.wall.as_secs_f64();
+            format!("{}, {faster:.2}x", number(each(both.processor)))
+        });
+        let against = |role: Role| {
+            let of_role = self.others.iter().filter(|(_, other, _)| *other == role);
+            let text = of_role.map(|(name, _, other)| {
+                let (ours, theirs) = (alone.processor.as_secs_f64(), other.processor.as_secs_f64());
+                let ratio = if role == Role::Peer {
+                    format!("{:.2}x as fast", theirs / ours)
+                } else {
+                    format!("{:.1}x its time", ours / theirs)
+                };
+                format!("{name} ({}): {ratio}", number(each(other.processor)))
+            });
+            text.collect::<Vec<_>>().join("; ")
+        };
+        println!(
+            "| {} | {} {} | {} | {rate:.digits$} {rate_unit} | {} | {two} | {} | {} |",
+            self.kernel,
+            grouped(self.count),
+            self.unit,
+            number(each(alone.processor)),
+            number(alone.bytes as f64 / self.count as f64),
+            against(Role::Peer),
+            against(Role::Limit),
+        );
+    }
+}
+
+/// Three digits that count.
+fn number(value: f64) -> String {
+    match value {
+        value if value >= 100.0 => format!("{value:.0}"),
+        value if value >= 10.0 => format!("{value:.1}"),
+        _ => format!("{value:.2}"),
+    }
+}
+
+/// 1048576 as "1 048 576".
+fn grouped(count: usize) -> String {
+    let digits = count.to_string();
+    let mut text = String::new();
+    for (place, digit) in digits.chars().enumerate() {
+        if place > 0 && (digits.len() - place).is_multiple_of(3) {
+            text.push(' ');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_short() {
+        assert_eq!([0.5, 12.34, 1234.0].map(number), ["0.50", "12.3", "1234"]);
+        assert_eq!([0, 999, 1_048_576].map(grouped), ["0", "999", "1 048 576"]);
+    }
+}

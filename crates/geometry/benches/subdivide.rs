@@ -1,0 +1,35 @@
+//! Catmull-Clark subdivision, adjacency of the coarse mesh included.
+
+use tessgraph_bench::{Bench, limits, shapes};
+use tessgraph_geometry::subdivide::{Options, subdivide};
+use tessgraph_geometry::{Mesh, Unmonitored};
+
+fn main() {
+    let bench = Bench::new("Subdivision");
+    let inputs = [
+        ("Catmull-Clark, grid", shapes::sheet(64, 64)),
+        (
+            "Catmull-Clark, irregular torus",
+            shapes::irregular_torus(64),
+        ),
+    ];
+    for (kernel, (positions, faces)) in inputs {
+        for levels in bench.sizes([3, 4, 5]) {
+            let count = faces.len() << (2 * levels);
+            let options = Options {
+                levels,
+                ..Default::default()
+            };
+            // Positions, corners, face offsets, the parent of each face.
+            let bytes = count * (24 + 16 + 4 + 8);
+            bench
+                .case(kernel, count, "faces")
+                .ours(
+                    || Mesh::from_faces(positions.clone(), &faces).expect("a mesh"),
+                    |mesh| subdivide(&mesh, options, &Unmonitored).expect("it is manifold"),
+                )
+                .limit("first touch of the result", limits::first_touch(bytes))
+                .run();
+        }
+    }
+}
