@@ -1,0 +1,346 @@
+// The page: its parts, and what each action does.
+import type { Action } from "./core/keys.ts";
+import { actionOf } from "./core/keys.ts";
+import { element } from "./core/dom.ts";
+import type { GraphNode, Shown, Span } from "./core/protocol.ts";
+import type { DrawerSize, DrawerTab } from "./core/settings.ts";
+import type { Store } from "./core/store.ts";
+import { formatBytes, formatTime } from "./core/units.ts";
+import { ChecksPanel } from "./panels/checks.ts";
+import { DetailsPanel } from "./panels/details.ts";
+import { commandEntries, type Entry, helpDialog, Palette } from "./panels/dialogs.ts";
+import { Drawer, nextSize } from "./panels/drawer.ts";
+import { GraphPanel } from "./panels/graph.ts";
+import { Legend } from "./panels/legend.ts";
+import { Banner, MessagesPanel } from "./panels/messages.ts";
+import { ParametersPanel } from "./panels/parameters.ts";
+import { SourcePanel } from "./panels/source.ts";
+import { StudyPanel } from "./panels/study.ts";
+import { TablePanel } from "./panels/table.ts";
+import { Topbar, choices } from "./panels/topbar.ts";
+import { Viewbar } from "./panels/viewbar.ts";
+import { Look } from "./look.ts";
+import { Stage } from "./stage.ts";
+import { ColourTool } from "./tools/colours.ts";
+import { PickTool } from "./tools/pick.ts";
+import { captionLines, compose, download } from "./tools/screenshot.ts";
+import type { LoadTimes } from "./view/buffers.ts";
+
+export class App {
+  private readonly look: Look;
+  private session: string | undefined;
+  private readonly stage: Stage;
+  private readonly topbar: Topbar;
+  private readonly viewbar: Viewbar;
+  private readonly drawer: Drawer;
+  private readonly legend: Legend;
+  private readonly parameters: ParametersPanel;
+  private readonly graph: GraphPanel;
+  private readonly details: DetailsPanel;
+  private readonly source: SourcePanel;
+  private readonly table: TablePanel;
+  private readonly study: StudyPanel;
+  private readonly messages: MessagesPanel;
+  private readonly banner: Banner;
+  private readonly help = helpDialog();
+  private readonly palette = new Palette();
+  private readonly colours: ColourTool | undefined;
+  private readonly pick: PickTool | undefined;
+
+  constructor(
+    private readonly store: Store,
+    host: HTMLElement,
+    address: URL,
+  ) {
+    const act = (action: Action): void => this.act(action);
+    const show = (node: string, result?: string): void => this.show(node, result);
+    const openSource = (node: GraphNode): void => this.openSource(node.span, node.line);
+    this.stage = new Stage(store, act, address);
+    const { viewer } = this.stage;
+    this.colours = viewer ? new ColourTool(viewer, () => this.legend) : undefined;
+    this.pick = viewer ? new PickTool(store, viewer, this.stage.readout) : undefined;
+    this.legend = new Legend({
+      range: (range) => this.colours?.hold(range) ?? false,
+      map: (map) => this.colours?.chooseMap(map),
+      lock: (locked) => this.lock(locked),
+      release: () => this.colours?.release(),
+    });
+    this.stage.root.append(this.legend.root);
+    this.viewbar = new Viewbar(act, (at) => this.look.moveSection(at));
+    this.banner = new Banner(store);
+    this.look = new Look(store, viewer, this.viewbar, this.banner);
+    this.topbar = new Topbar(store, {
+      act,
+      show,
+      colourBy: (field) => this.colourBy(field || undefined),
+      messages: () => this.drawer.open("messages"),
+    });
+    this.parameters = new ParametersPanel(store, {
+      get: () => this.look.preferences.live,
+      set: (live) => this.look.setPreference({ live }),
+    });
+    const checks = new ChecksPanel(store, (node) => this.show(node));
+    this.details = new DetailsPanel(store, { show, openSource });
+    this.graph = new GraphPanel(store, { show, openSource, describe: (node) => this.details.describe(node) });
+    this.source = new SourcePanel(store);
+    this.table = new TablePanel(store);
+    this.study = new StudyPanel(store);
+    this.messages = new MessagesPanel(store, (span, line) => this.openSource(span, line), show);
+    const panels = {
+      graph: element("div", { class: "graph-tab" }, this.graph.root, this.details.root),
+      table: this.table.root,
+      messages: this.messages.root,
+      source: this.source.root,
+      study: this.study.root,
+    };
+    this.drawer = new Drawer(panels, (tab, size) => this.keepDrawer(tab, size), this.look.view.tab, this.look.view.drawer);
+    const middle = element("div", { class: "middle" }, this.stage.root, this.viewbar.root, this.drawer.root);
+    const rail = element("aside", { class: "rail" }, this.parameters.root, checks.root);
+    host.append(element("div", { class: "page" }, this.topbar.root, this.banner.root, element("div", { class: "columns" }, rail, middle)), this.help, this.palette.root);
+    this.listen();
+  }
+
+  private listen(): void {
+    const { store } = this;
+    document.addEventListener("keydown", (event) => this.key(event));
+    store.on("hello", ({ file, folder, session }) => this.greet(`${folder}/${file}`, session));
+    store.on("shown", (shown) => void this.showPicture(shown));
+    this.study.onStudy = () => this.drawer.setCount("study", "•", false);
+    this.messages.onCount = (errors, warnings) => {
+      const text = [errors > 0 ? `✗ ${errors}` : "", warnings > 0 ? `⚠ ${warnings}` : ""].filter(Boolean).join(" ");
+      this.drawer.setCount("messages", text, errors > 0);
+    };
+    let failing = false;
+    store.on("diagnostics", ({ items }) => {
+      const errors = items.some((item) => item.severity === "error");
+      // Only when it begins: a panel that people turned away from stays away.
+      if (errors && !failing) this.drawer.open("messages");
+      failing = errors;
+    });
+    const { viewer } = this.stage;
+    if (viewer) viewer.onPicture = (times) => this.finishPicture(times);
+    if (this.pick) this.pick.onMeasuring = (measuring) => this.viewbar.press("measure", measuring);
+  }
+
+  /** The first hello brings back how this graph was looked at; a later one only a new session. */
+  private greet(graph: string, session: string): void {
+    const restarted = this.session !== undefined && this.session !== session;
+    this.session = session;
+    if (restarted) {
+      this.banner.say("info", "tessgraph was started again; the page went on.");
+      this.restoreShown = true;
+    }
+    if (!this.look.turnTo(graph)) return;
+    const { view } = this.look;
+    this.restoreShown = view.node !== undefined;
+    if (this.colours) {
+      this.colours.wanted = view.field;
+      this.colours.locked = view.locked;
+    }
+    this.drawer.open(view.tab, view.drawer);
+  }
+
+  /** After a reload or a restart the server shows its own choice; ask once for ours. */
+  private restoreShown = false;
+
+  private show(node: string, result?: string): void {
+    const known = this.store.get("document")?.nodes.find((n) => n.name === node);
+    const main = result ?? known?.results.find((r) => r.main)?.name;
+    this.store.send({ type: "show", node, ...(main === undefined ? {} : { result: main }) });
+  }
+
+  private async showPicture(shown: Shown): Promise<void> {
+    const arrived = performance.now();
+    const before = this.look.view.node;
+    if (this.restoreShown && before) {
+      this.restoreShown = false;
+      const exists = this.store.get("document")?.nodes.some((n) => n.name === before.node);
+      if (exists && (before.node !== shown.node || before.result !== shown.result)) {
+        this.show(before.node, before.result);
+        return;
+      }
+    }
+    this.restoreShown = false;
+    if (before?.node !== shown.node || before.result !== shown.result) {
+      this.pick?.clear();
+      this.look.change({ node: { node: shown.node, result: shown.result } });
+    }
+    this.stage.describe(shown);
+    if (!shown.mesh && !shown.empty && (shown.table || shown.report)) this.drawer.open("table");
+    const { viewer, colours } = this.stage.viewer && this.colours ? { viewer: this.stage.viewer, colours: this.colours } : { viewer: undefined, colours: undefined };
+    if (!viewer || !colours || (!shown.mesh && !shown.empty)) return;
+    const field = colours.take(shown);
+    this.topbar.setColours(colours.choices, colours.current);
+    this.arrived = arrived;
+    try {
+      await viewer.show(shown, field);
+    } catch (error) {
+      this.banner.say("error", `The picture could not be made: ${error instanceof Error ? error.message : String(error)}`);
+    }
+  }
+
+  private arrived = 0;
+
+  /** The new picture is with the graphics card: legend, pick and times follow. */
+  private finishPicture(times: LoadTimes): void {
+    const shown = this.store.get("shown");
+    const { arrived } = this;
+    this.colours?.apply();
+    this.look.applySection();
+    this.pick?.refresh(shown?.mesh?.faces ?? 0);
+    const uploaded = performance.now();
+    this.stage.viewer?.whenDrawn(() => {
+      const now = performance.now();
+      performance.clearMeasures("repaint");
+      performance.clearMarks();
+      const detail = { ...times, draw: now - uploaded, version: shown?.version };
+      performance.measure("repaint", { start: arrived, end: now, detail });
+      this.stage.root.dataset["version"] = String(shown?.version ?? "");
+      this.viewbar.setTimes(
+        `drawn in ${formatTime(now - arrived)}`,
+        `fetched ${formatBytes(times.bytes)} in ${formatTime(times.fetch)}, uploaded in ${formatTime(times.upload)}, drawn in ${formatTime(now - uploaded)}; ${formatBytes(this.stage.viewer?.bytes ?? 0)} on the graphics card`,
+      );
+    });
+  }
+
+  private key(event: KeyboardEvent): void {
+    const target = event.target as HTMLElement;
+    const action = actionOf(event);
+    if (!action || this.help.open || this.palette.root.open) return;
+    const typing = target.matches("input:not([type=range], [type=checkbox]), textarea");
+    if (typing && action !== "cancel") return;
+    // Space presses what is focused, and a list's letters choose in it.
+    if (target.matches("button, summary, select, [role=button]") && event.key === " ") return;
+    if (target.matches("select") && event.key.length === 1 && !event.ctrlKey) return;
+    event.preventDefault();
+    this.act(action);
+  }
+
+  /** Does what a key, a button or a command names. */
+  act(action: Action): void {
+    this.actions[action]();
+  }
+
+  private readonly actions: Record<Action, () => void> = {
+    fit: () => this.stage.viewer?.fit(),
+    fit_selection: () => this.stage.viewer?.fit(this.pick?.points),
+    front: () => this.look.from("front"),
+    back: () => this.look.from("back"),
+    right: () => this.look.from("right"),
+    left: () => this.look.from("left"),
+    top: () => this.look.from("top"),
+    bottom: () => this.look.from("bottom"),
+    projection: () => this.look.toggleProjection(),
+    saved_view: () => this.look.fromSaved(),
+    save_view: () => this.look.keepView(),
+    navigation: () => this.look.nextProfile(),
+    edges: () => this.look.nextEdges(),
+    ghost: () => this.look.change({ ghost: !this.look.view.ghost }),
+    grid: () => this.look.change({ grid: !this.look.view.grid }),
+    directions: () => this.look.toggleDirections(),
+    colour: () => this.colourBy(this.colours?.next()),
+    lock_range: () => this.lock(!this.colours?.locked),
+    section: () => this.look.nextSection(),
+    section_flip: () => this.look.flipSection(),
+    measure: () => this.pick?.toggleMeasure(),
+    screenshot: () => void this.screenshot(),
+    next_output: () => this.stepOutput(1),
+    previous_output: () => this.stepOutput(-1),
+    previous_check: () => this.stepCheck(-1),
+    next_check: () => this.stepCheck(1),
+    undo: () => this.store.send({ type: "undo" }),
+    redo: () => this.store.send({ type: "redo" }),
+    run: () => this.store.send({ type: "run" }),
+    search: () => this.palette.open(this.searchEntries(), "Search nodes and parameters"),
+    commands: () => this.palette.open([...commandEntries((a) => this.act(a)), ...this.searchEntries()], "Commands, nodes, parameters"),
+    drawer: () => this.drawer.open(this.drawer.tab, nextSize(this.drawer.size)),
+    theme: () => this.look.toggleTheme(),
+    help: () => this.help.showModal(),
+    cancel: () => this.cancel(),
+  };
+
+  private colourBy(field: string | undefined): void {
+    const shown = this.store.get("shown");
+    if (!this.colours || !shown) return;
+    this.colours.wanted = field;
+    this.look.change({ field });
+    void this.showPicture(shown);
+  }
+
+  private lock(locked: boolean): void {
+    if (!this.colours) return;
+    this.colours.locked = locked;
+    this.look.change({ locked });
+    this.colours.apply();
+  }
+
+  private stepOutput(step: number): void {
+    const graph = this.store.get("document");
+    if (!graph) return;
+    const list = choices(graph, undefined).map(({ value }) => value);
+    const { node, result } = this.store.get("shown") ?? {};
+    const index = list.indexOf(JSON.stringify([node, result]));
+    const next = list[(index + step + list.length) % list.length];
+    if (next === undefined) return;
+    const [name = "", main = ""] = JSON.parse(next) as string[];
+    this.show(name, main);
+  }
+
+  private failing = -1;
+
+  private stepCheck(step: number): void {
+    const failing = (this.store.get("checks")?.items ?? []).filter((check) => check.ok === false);
+    if (failing.length === 0) {
+      this.banner.say("info", "No check fails.");
+      return;
+    }
+    this.failing = (this.failing + step + failing.length) % failing.length;
+    const check = failing[this.failing];
+    if (!check) return;
+    this.show(check.node);
+    this.banner.say("warning", `${check.node}: ${check.sentence}`);
+  }
+
+  private searchEntries(): Entry[] {
+    const graph = this.store.get("document");
+    const nodes = (graph?.nodes ?? []).map((node) => ({
+      label: node.name,
+      hint: node.kind,
+      run: () => {
+        this.drawer.open("graph");
+        this.show(node.name);
+        this.details.describe(node.name);
+        this.graph.focus(node.name);
+      },
+    }));
+    const parameters = (graph?.parameters ?? []).map((p) => ({ label: p.name, hint: "parameter", run: () => this.parameters.focus(p.name) }));
+    return [...parameters, ...nodes];
+  }
+
+  private async screenshot(): Promise<void> {
+    const { viewer } = this.stage;
+    if (!viewer) return;
+    const { store } = this;
+    const shown = store.get("shown");
+    const blob = await compose(viewer.picture(2), captionLines(store.get("hello"), store.get("document"), shown), this.look.preferences.theme, 2);
+    if (blob) download(blob, `${(store.get("hello")?.file ?? "tessgraph").replace(/\.ron$/, "")}_${shown?.node ?? "view"}.png`);
+  }
+
+  private cancel(): void {
+    if (this.pick?.cancel()) return;
+    if (this.store.get("status")?.state === "computing") this.store.send({ type: "cancel" });
+    else this.banner.hide();
+  }
+
+  private openSource(span: Span, line: number): void {
+    this.drawer.open("source");
+    this.source.reveal(span, line);
+  }
+
+  private keepDrawer(tab: DrawerTab, drawer: DrawerSize): void {
+    this.look.change({ tab, drawer });
+    if (tab === "source") this.source.refresh();
+    if (tab === "table") this.table.refresh();
+    if (tab === "study") this.study.refresh();
+  }
+}

@@ -1,0 +1,226 @@
+// The messages between `tessgraph view` and this page, as crates/view defines them.
+// A later message of a type replaces the earlier one as a whole.
+
+/** Name of an immutable buffer: 32 hex digits of its content. */
+export type Digest = string;
+export type Value = number | boolean | string;
+export type Vec3 = [number, number, number];
+/** Bytes [start, end) of the graph's UTF-8 source. */
+export type Span = [number, number];
+
+export type Hello = {
+  type: "hello";
+  version: string;
+  file: string;
+  folder: string;
+  /** Changes when the server restarts. */
+  session: string;
+  read_only: boolean;
+};
+
+export type LengthUnit = "m" | "cm" | "mm" | "ft" | "in";
+
+export type Parameter = {
+  name: string;
+  kind: "number" | "integer" | "bool" | "text" | "path" | "choice";
+  /** What the graph runs with now, in the file's units. */
+  value: Value;
+  /** What the file says now. */
+  in_file: Value;
+  /** What the file said when the session began: reset goes here. */
+  initial: Value;
+  min?: number;
+  max?: number;
+  unit: string;
+  of?: string[];
+  about: string;
+  /** Set on the command line; the file's value is not used. */
+  locked: boolean;
+  line: number;
+  span: Span;
+};
+
+export type GraphNode = {
+  name: string;
+  kind: string;
+  about: string;
+  line: number;
+  span: Span;
+  inputs: { name: string; text: string; from: string[] }[];
+  results: { name: string; kind: string; main: boolean }[];
+};
+
+export type Output = { path: string; node: string; result: string; kind: string };
+
+export type Document = {
+  type: "document";
+  source: string;
+  units: LengthUnit;
+  parameters: Parameter[];
+  nodes: GraphNode[];
+  outputs: Output[];
+  can_undo: boolean;
+  can_redo: boolean;
+};
+
+export type Status = {
+  type: "status";
+  state: "up_to_date" | "computing" | "stale" | "waiting" | "cancelled";
+  /** Milliseconds of the last run. */
+  ms?: number;
+  done?: number;
+  total?: number;
+  node?: string;
+  fraction?: number;
+  errors?: number;
+  line?: number;
+  waiting_for?: string;
+  cause?: string;
+};
+
+export type Outcome =
+  | "computed"
+  | "cached"
+  | "cut_off"
+  | "failed"
+  | "blocked"
+  | "skipped"
+  | "running"
+  | "stale";
+
+export type NodeOutcome = {
+  name: string;
+  outcome: Outcome;
+  ms: number;
+  bytes: number;
+  warnings: string[];
+  explain?: string;
+};
+export type Outcomes = { type: "outcomes"; nodes: NodeOutcome[] };
+
+export type Diagnostic = {
+  code: string;
+  severity: "error" | "warning";
+  message: string;
+  file: string;
+  line: number;
+  column: number;
+  span: Span;
+  labels: { message: string; line: number; column: number; span: Span }[];
+  help?: string;
+  /** The text the command line shows. */
+  rendered: string;
+};
+export type Diagnostics = { type: "diagnostics"; items: Diagnostic[] };
+
+export type Cell = number | string | boolean | null;
+export type Named = { name: string; value: Cell; unit: string };
+export type Check = {
+  node: string;
+  kind: string;
+  values: Named[];
+  /** null: only a measurement. */
+  ok: boolean | null;
+  sentence: string;
+};
+export type Checks = { type: "checks"; items: Check[] };
+
+export type ShownMesh = {
+  vertices: number;
+  faces: number;
+  triangles: number;
+  /** Metres; positions are relative to it. */
+  origin: Vec3;
+  /** Metres, absolute. */
+  bounds: [Vec3, Vec3];
+  /** File units per metre. */
+  scale: number;
+  positions: Digest;
+  triangles_buffer: Digest;
+  triangle_faces: Digest;
+  edges: Digest;
+  base_faces?: Digest;
+  buffers: Record<Digest, number>;
+};
+export type ShownField = {
+  name: string;
+  label: string;
+  on: "vertex" | "face";
+  unit: string;
+  min: number;
+  max: number;
+  values: Digest;
+  categorical: boolean;
+  node: string;
+};
+export type ShownTable = { columns: { name: string; unit: string }[]; rows: Cell[][]; total: number };
+export type Shown = {
+  type: "shown";
+  node: string;
+  result: string;
+  kind: string;
+  version: number;
+  /** A sentence when there is nothing to draw. */
+  empty?: string;
+  mesh?: ShownMesh;
+  directions?: { per: "vertex"; outward: Digest; on: "mesh" };
+  fields: ShownField[];
+  table?: ShownTable;
+  report?: Named[];
+};
+
+export type Picked = {
+  type: "picked";
+  request: number;
+  face?: number;
+  vertex?: number;
+  lines: [string, string][];
+  vertices?: Vec3[];
+};
+export type Measured = {
+  type: "measured";
+  request: number;
+  from: Vec3;
+  to: Vec3;
+  distance: string;
+  delta: [string, string, string];
+};
+export type Described = {
+  type: "described";
+  node: string;
+  markdown: string;
+  results: { name: string; summary: string }[];
+  warnings: string[];
+};
+export type Notice = { type: "notice"; level: "info" | "warning" | "error"; text: string };
+export type Study = { type: "study"; path: string; columns: string[]; rows: (number | string | null)[][] };
+
+export type FromServer =
+  | Hello
+  | Document
+  | Status
+  | Outcomes
+  | Diagnostics
+  | Checks
+  | Shown
+  | Picked
+  | Measured
+  | Described
+  | Notice
+  | Study;
+
+/** One end of a measurement; a vertex is taken where both are named. */
+export type Place = { vertex?: number; face?: number };
+
+export type ToServer =
+  | { type: "set"; name: string; value: Value }
+  | { type: "write"; name: string; value: Value }
+  | { type: "reset"; name: string }
+  | { type: "undo" }
+  | { type: "redo" }
+  | { type: "show"; node: string; result?: string }
+  | { type: "cancel" }
+  | { type: "run" }
+  | ({ type: "pick"; request: number } & Place)
+  | { type: "measure"; request: number; from: Place; to: Place }
+  | { type: "describe"; node: string };

@@ -1,0 +1,163 @@
+// How the model is looked at: camera, theme, edges, section. Kept between pages;
+// nothing here changes a result.
+import type { Store } from "./core/store.ts";
+import { lengthUnit } from "./core/store.ts";
+import {
+  INITIAL_VIEW,
+  type Preferences,
+  type ViewState,
+  loadPreferences,
+  loadView,
+  savePreferences,
+  saveView,
+} from "./core/settings.ts";
+import type { Banner } from "./panels/messages.ts";
+import type { Viewbar } from "./panels/viewbar.ts";
+import { PROFILES, PROFILE_LABELS, type Profile, type StandardView } from "./view/camera.ts";
+import type { EdgeMode } from "./view/surface.ts";
+import type { Section, Viewer } from "./view/viewer.ts";
+
+const EDGE_MODES: EdgeMode[] = ["polygons", "triangles", "none"];
+
+export class Look {
+  readonly preferences: Preferences = loadPreferences();
+  view: ViewState = { ...INITIAL_VIEW };
+  private graph: string | undefined;
+
+  constructor(
+    private readonly store: Store,
+    private readonly viewer: Viewer | undefined,
+    private readonly viewbar: Viewbar,
+    private readonly banner: Banner,
+  ) {
+    if (viewer) viewer.onMoved = () => this.save();
+    window.addEventListener("pagehide", () => this.save());
+    this.applyPreferences();
+  }
+
+  /** Brings back how a graph was looked at; says whether it is another graph than before. */
+  turnTo(graph: string): boolean {
+    if (this.graph === graph) return false;
+    this.graph = graph;
+    this.view = loadView(graph);
+    if (this.view.camera) this.viewer?.restoreCamera(this.view.camera);
+    this.apply();
+    return true;
+  }
+
+  save(): void {
+    if (this.graph === undefined) return;
+    this.view.camera = this.viewer?.cameraState() ?? this.view.camera;
+    saveView(this.graph, this.view);
+  }
+
+  /** Changes a part of the view, draws it and keeps it. */
+  change(part: Partial<ViewState>): void {
+    Object.assign(this.view, part);
+    this.apply();
+    this.save();
+  }
+
+  apply(): void {
+    const { viewer, viewbar } = this;
+    const { edges, ghost, grid, directions } = this.view;
+    viewer?.setEdges(edges);
+    viewer?.setGhost(ghost);
+    viewer?.setGrid(grid);
+    viewer?.setDirections(directions);
+    viewbar.press("edges", edges !== "none", edges === "triangles" ? "Triangles" : "Edges");
+    viewbar.press("ghost", ghost);
+    viewbar.press("grid", grid);
+    viewbar.press("directions", directions);
+    viewbar.press("projection", viewer?.camera.isOrthographic ?? false);
+    this.applySection();
+  }
+
+  private applyPreferences(): void {
+    const { theme, profile } = this.preferences;
+    document.documentElement.dataset["theme"] = theme;
+    this.viewer?.setTheme(theme);
+    if (this.viewer) this.viewer.camera.profile = profile;
+    this.viewbar.setProfile(PROFILE_LABELS[profile]);
+    savePreferences(this.preferences);
+  }
+
+  setPreference(part: Partial<Preferences>): void {
+    Object.assign(this.preferences, part);
+    this.applyPreferences();
+  }
+
+  toggleTheme(): void {
+    this.setPreference({ theme: this.preferences.theme === "dark" ? "light" : "dark" });
+  }
+
+  nextProfile(): void {
+    const index = PROFILES.indexOf(this.preferences.profile) + 1;
+    this.setPreference({ profile: PROFILES[index % PROFILES.length] as Profile });
+  }
+
+  nextEdges(): void {
+    const index = EDGE_MODES.indexOf(this.view.edges) + 1;
+    this.change({ edges: EDGE_MODES[index % EDGE_MODES.length] as EdgeMode });
+  }
+
+  from(view: StandardView): void {
+    this.viewer?.camera.look(view);
+    this.viewer?.invalidate();
+  }
+
+  toggleProjection(): void {
+    this.viewer?.camera.toggleProjection();
+    this.viewer?.invalidate();
+    this.apply();
+    this.save();
+  }
+
+  fromSaved(): void {
+    if (this.view.saved) this.viewer?.restoreCamera(this.view.saved);
+    else this.from("corner");
+    this.apply();
+  }
+
+  keepView(): void {
+    this.view.saved = this.viewer?.cameraState();
+    this.save();
+    this.banner.say("info", "View saved: 0 comes back to it.");
+  }
+
+  toggleDirections(): void {
+    if (!this.view.directions && !this.store.get("shown")?.directions) {
+      this.banner.say("info", "What is shown carries no directions: show a node that gives some, such as SmoothNormals.");
+    }
+    this.change({ directions: !this.view.directions });
+  }
+
+  /** Draws the section; its slider spans the model shown now. */
+  applySection(): void {
+    const mesh = this.store.get("shown")?.mesh;
+    this.viewer?.setSection(this.view.section);
+    this.viewbar.setSection(this.view.section, mesh?.bounds, mesh?.scale ?? 1, lengthUnit(this.store.get("document")));
+  }
+
+  /** Across X, then Y, then Z, each time through the middle of the model, then none. */
+  nextSection(): void {
+    const bounds = this.store.get("shown")?.mesh?.bounds;
+    const next = this.view.section ? this.view.section.axis + 1 : 0;
+    if (!bounds || next > 2) {
+      this.change({ section: undefined });
+      return;
+    }
+    const axis = next as Section["axis"];
+    const at = (bounds[0][axis] + bounds[1][axis]) / 2;
+    this.change({ section: { axis, at, flipped: this.view.section?.flipped ?? false } });
+  }
+
+  moveSection(at: number): void {
+    if (this.view.section) this.change({ section: { ...this.view.section, at } });
+  }
+
+  flipSection(): void {
+    const { section } = this.view;
+    if (section) this.change({ section: { ...section, flipped: !section.flipped } });
+  }
+}

@@ -1,0 +1,45 @@
+// The state chip: one short sentence that is always true of the picture.
+import type { Diagnostics, Hello, Status } from "../core/protocol.ts";
+import type { Link } from "../core/store.ts";
+import { formatTime } from "../core/units.ts";
+
+export type Chip = {
+  sign: string;
+  text: string;
+  kind: "good" | "busy" | "bad" | "waiting" | "idle";
+  /** What a click offers: to stop the run, or to see the messages. */
+  act?: "cancel" | "messages" | "run";
+};
+
+/** The chip for what is known; the connection says more than the last run. */
+export function chipOf(link: Link, hello: Hello | undefined, status: Status | undefined, diagnostics: Diagnostics | undefined): Chip {
+  if (link === "refused") {
+    return { sign: "⊘", text: "Server restarted with a new address: open the one it printed", kind: "bad" };
+  }
+  if (link === "retrying") return { sign: "⊘", text: "Disconnected: retrying", kind: "bad" };
+  if (link === "connecting" || !status) return { sign: "◌", text: "Connecting", kind: "idle" };
+  const chip = chipOfStatus(status, diagnostics);
+  return hello?.read_only ? { ...chip, text: `${chip.text} · read only` } : chip;
+}
+
+function chipOfStatus(status: Status, diagnostics: Diagnostics | undefined): Chip {
+  const cause = status.cause ? ` · ${status.cause}` : "";
+  switch (status.state) {
+    case "up_to_date":
+      return { sign: "✓", text: `Up to date${status.ms === undefined ? "" : ` ${formatTime(status.ms)}`}`, kind: "good" };
+    case "computing": {
+      const place = status.total ? ` ${status.done ?? 0}/${status.total}` : "";
+      const part = status.fraction === undefined ? "" : ` ${Math.round(100 * status.fraction)} %`;
+      return { sign: "↻", text: `Computing${place}${status.node ? ` ${status.node}` : ""}${part}`, kind: "busy", act: "cancel" };
+    }
+    case "stale": {
+      const errors = status.errors ?? diagnostics?.items.filter((d) => d.severity === "error").length ?? 0;
+      const line = status.line === undefined ? "" : ` (line ${status.line})`;
+      return { sign: "!", text: `Stale: ${errors === 1 ? "1 error" : `${errors} errors`}${line}`, kind: "bad", act: "messages" };
+    }
+    case "waiting":
+      return { sign: "…", text: `Waiting for ${status.waiting_for ?? "a file"}`, kind: "waiting", act: "messages" };
+    case "cancelled":
+      return { sign: "■", text: `Stopped${cause}`, kind: "waiting", act: "run" };
+  }
+}

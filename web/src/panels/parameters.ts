@@ -1,0 +1,128 @@
+// The parameters of the graph: slider, box, unit and reset for each.
+import { button, element, setHidden } from "../core/dom.ts";
+import type { Document, Parameter } from "../core/protocol.ts";
+import type { Store } from "../core/store.ts";
+import type { Live } from "../core/throttle.ts";
+import { type Row, makeRow } from "./parameter_row.ts";
+
+/** More parameters than this get a search box and groups that fold. */
+export const MANY = 20;
+
+export type ParameterGroup = { title: string; names: string[] };
+
+/**
+ * Groups by the first word of a name, in file order: `roof_width` and `roof_height`
+ * are "roof". Words of one name only go together under "other".
+ */
+export function groupParameters(names: string[]): ParameterGroup[] {
+  const counts = new Map<string, number>();
+  const word = (name: string): string => name.split("_")[0] ?? name;
+  for (const name of names) counts.set(word(name), (counts.get(word(name)) ?? 0) + 1);
+  const groups = new Map<string, string[]>();
+  for (const name of names) {
+    const title = (counts.get(word(name)) ?? 0) > 1 ? word(name) : "other";
+    groups.set(title, [...(groups.get(title) ?? []), name]);
+  }
+  return [...groups].map(([title, members]) => ({ title, names: members }));
+}
+
+export class ParametersPanel {
+  readonly root = element("section", { class: "panel parameters", "aria-label": "Parameters" });
+  private readonly list = element("div", { class: "parameter-list" });
+  private readonly search = element("input", { type: "search", placeholder: "Search parameters", "aria-label": "Search parameters" });
+  private readonly undo: HTMLButtonElement;
+  private readonly redo: HTMLButtonElement;
+  private rows = new Map<string, Row>();
+  private shape = "";
+
+  constructor(
+    private readonly store: Store,
+    live: { get(): Live; set(live: Live): void },
+  ) {
+    this.undo = button("↶", "Take back the last edit made here (Ctrl Z)", () => store.send({ type: "undo" }), { class: "icon" });
+    this.redo = button("↷", "Make it again (Ctrl Shift Z)", () => store.send({ type: "redo" }), { class: "icon" });
+    const header = element("header", {}, element("h2", {}, "Parameters"), liveSwitch(live), this.undo, this.redo);
+    this.search.addEventListener("input", () => this.filter());
+    this.root.append(header, this.search, this.list);
+    this.live = live.get;
+    store.on("document", (document) => this.update(document));
+    store.on("hello", () => {
+      const document = store.get("document");
+      if (document) this.update(document);
+    });
+    store.onLink((link) => this.root.toggleAttribute("inert", link !== "open"));
+  }
+
+  private readonly live: () => Live;
+
+  private update(document: Document): void {
+    const { parameters } = document;
+    const readOnly = this.store.get("hello")?.read_only ?? false;
+    this.undo.disabled = !document.can_undo || readOnly;
+    this.redo.disabled = !document.can_redo || readOnly;
+    const shape = JSON.stringify(parameters.map((p) => [p.name, p.kind, p.of, p.unit]));
+    if (shape !== this.shape) {
+      this.shape = shape;
+      this.build(parameters);
+    }
+    for (const parameter of parameters) this.rows.get(parameter.name)?.update(parameter, readOnly);
+  }
+
+  private build(parameters: Parameter[]): void {
+    this.rows = new Map(parameters.map((p) => [p.name, makeRow(p, this.store, this.live)]));
+    const many = parameters.length > MANY;
+    setHidden(this.search, !many);
+    if (parameters.length === 0) {
+      this.list.replaceChildren(element("p", { class: "hint" }, "This graph has no parameters. Name one under `params` and it gets a slider here."));
+      return;
+    }
+    const rowsOf = (names: string[]): HTMLElement[] => names.flatMap((name) => this.rows.get(name)?.root ?? []);
+    const names = parameters.map((p) => p.name);
+    if (!many) {
+      this.list.replaceChildren(...rowsOf(names));
+      return;
+    }
+    this.list.replaceChildren(
+      ...groupParameters(names).map(({ title, names: members }, index) =>
+        element("details", { class: "group", open: index === 0 }, element("summary", {}, `${title} (${members.length})`), ...rowsOf(members)),
+      ),
+    );
+    this.filter();
+  }
+
+  private filter(): void {
+    const wanted = this.search.hidden ? "" : this.search.value.trim().toLowerCase();
+    for (const [name, row] of this.rows) {
+      setHidden(row.root, wanted !== "" && !`${name} ${row.about}`.toLowerCase().includes(wanted));
+    }
+    for (const group of this.list.querySelectorAll("details")) {
+      const some = [...group.querySelectorAll<HTMLElement>(".parameter")].some((row) => !row.hidden);
+      setHidden(group, !some);
+      if (wanted !== "" && some) group.open = true;
+    }
+  }
+
+  /** Puts the keyboard on a parameter. */
+  focus(name: string): void {
+    const row = this.rows.get(name);
+    row?.root.closest("details")?.setAttribute("open", "");
+    row?.root.scrollIntoView({ block: "nearest" });
+    row?.root.querySelector<HTMLElement>("input, select")?.focus();
+  }
+}
+
+function liveSwitch(live: { get(): Live; set(live: Live): void }): HTMLElement {
+  const labels: [Live, string][] = [
+    ["auto", "live: auto"],
+    ["always", "live: always"],
+    ["release", "on release"],
+  ];
+  const select = element("select", {
+    class: "small",
+    "aria-label": "When a moved slider is evaluated",
+    title: "When a moved slider is evaluated. Auto: while it moves if the last run took less than 0.3 s, else on release",
+  });
+  for (const [value, label] of labels) select.append(element("option", { value, selected: live.get() === value }, label));
+  select.addEventListener("change", () => live.set(select.value as Live));
+  return select;
+}

@@ -1,0 +1,372 @@
+// The 3D picture: what is shown, drawn only when something changed.
+import {
+  Box3,
+  Timer,
+  Color,
+  ColorManagement,
+  LinearSRGBColorSpace,
+  Frustum,
+  Matrix4,
+  NearestFilter,
+  RGBAIntegerFormat,
+  Scene,
+  Sphere,
+  UnsignedIntType,
+  Vector3,
+  WebGLRenderTarget,
+  WebGLRenderer,
+} from "three";
+import type { MapName } from "../core/colour.ts";
+import type { ColourRange } from "../core/legend.ts";
+import type { Shown, ShownField, Vec3 } from "../core/protocol.ts";
+import { Buffers, type LoadTimes } from "./buffers.ts";
+import { type CameraState, ViewCamera } from "./camera.ts";
+import { Ground } from "./ground.ts";
+import { Marks } from "./marks.ts";
+import { type EdgeMode, Surface, neededBuffers } from "./surface.ts";
+import { type ThemeName, VIEW_THEMES } from "./theme.ts";
+
+// Colours here are those of the screen from end to end; nothing converts them.
+ColorManagement.enabled = false;
+
+/** What lies under a pixel. */
+export type Hit = { face: number; vertex: number; triangle: number; point: Vector3 };
+
+/** A section plane: axis, place along it in absolute metres, and which side stays. */
+export type Section = { axis: 0 | 1 | 2; at: number; flipped: boolean };
+
+/** More triangles than this are drawn at one pixel per pixel while the camera moves. */
+const HEAVY_TRIANGLES = 3_000_000;
+
+export class Viewer {
+  readonly camera: ViewCamera;
+  readonly marks = new Marks();
+  /** Called before each frame: overlays follow the camera. */
+  onFrame: () => void = () => {};
+  /** Called with the bytes of each buffer fetched. */
+  onBuffer: (digest: string, bytes: ArrayBuffer) => void = () => {};
+  /** Called when a picture of something new was drawn. */
+  onPicture: (times: LoadTimes) => void = () => {};
+  onMoved: () => void = () => {};
+  private readonly renderer: WebGLRenderer;
+  private readonly buffers: Buffers;
+  private readonly surface = new Surface();
+  private readonly ground = new Ground();
+  private readonly scene = new Scene();
+  private readonly pickScene = new Scene();
+  private readonly pickTarget: WebGLRenderTarget;
+  private readonly timer = new Timer();
+  private scheduled = false;
+  private sequence = 0;
+  private moving = false;
+  private shown: Shown | undefined;
+  private field: ShownField | undefined;
+  /** Absolute metres of the scene's zero; fixed by the first model, so that the camera keeps its numbers small. */
+  private origin: Vec3 | undefined;
+  private edgeMode: EdgeMode = "polygons";
+  private section: Section | undefined;
+  private fitted = false;
+
+  /** Throws where the browser gives no WebGL2. */
+  constructor(
+    private readonly host: HTMLElement,
+    address: URL,
+    smooth: () => boolean,
+  ) {
+    this.renderer = new WebGLRenderer({ antialias: true, powerPreference: "high-performance" });
+    this.renderer.outputColorSpace = LinearSRGBColorSpace;
+    const canvas = this.renderer.domElement;
+    canvas.tabIndex = 0;
+    canvas.setAttribute("role", "img");
+    canvas.setAttribute("aria-label", "The model; press ? for keys");
+    host.append(canvas);
+    this.buffers = new Buffers(this.renderer, address);
+    this.camera = new ViewCamera(canvas, smooth);
+    this.camera.pointUnder = (x, y) => this.hit(x, y)?.point;
+    this.pickTarget = new WebGLRenderTarget(1, 1, {
+      format: RGBAIntegerFormat,
+      type: UnsignedIntType,
+      internalFormat: "RGBA32UI",
+      minFilter: NearestFilter,
+      magFilter: NearestFilter,
+    });
+    this.scene.add(this.ground.group, this.surface.group, this.marks.group);
+    this.pickScene.add(this.surface.pickGroup);
+    for (const event of ["control", "wake", "transitionstart"] as const) {
+      this.camera.controls.addEventListener(event, () => this.invalidate());
+    }
+    this.camera.controls.addEventListener("rest", () => this.rest());
+    canvas.addEventListener("webglcontextrestored", () => this.rebuild());
+    new ResizeObserver(() => this.resize()).observe(host);
+    this.resize();
+  }
+
+  get canvas(): HTMLCanvasElement {
+    return this.renderer.domElement;
+  }
+
+  /** Whether a mesh was shown already. */
+  get hasModel(): boolean {
+    return this.shown?.mesh !== undefined;
+  }
+
+  /** Bytes of the model on the graphics card. */
+  get bytes(): number {
+    return this.buffers.bytes;
+  }
+
+  /**
+   * Shows a result, coloured by one of its fields. The old picture stays until all
+   * buffers are here; a newer call overtakes an older one. The camera stays, but
+   * for the very first picture.
+   */
+  async show(shown: Shown, field: ShownField | undefined): Promise<void> {
+    this.sequence += 1;
+    const { sequence } = this;
+    const needed = neededBuffers(shown, field);
+    const times = await this.buffers.load(needed, (digest, bytes) => this.onBuffer(digest, bytes));
+    if (sequence !== this.sequence) return;
+    this.buffers.keep(needed);
+    this.shown = shown;
+    this.field = field;
+    this.surface.show(shown, field, this.buffers);
+    if (shown.mesh) this.place(shown.mesh);
+    this.updateCut();
+    this.invalidate();
+    this.onPicture(times);
+  }
+
+  private place(mesh: NonNullable<Shown["mesh"]>): void {
+    this.origin ??= [...mesh.origin];
+    const { origin } = this;
+    this.surface.place(mesh.origin[0] - origin[0], mesh.origin[1] - origin[1], mesh.origin[2] - origin[2]);
+    this.ground.update(mesh.bounds, origin, mesh.scale);
+    if (!this.fitted && mesh.triangles > 0) {
+      this.fitted = true;
+      void this.camera.controls.rotateTo(Math.PI / 5, Math.PI / 2.9, false);
+      this.camera.fit(this.box(), false);
+    }
+  }
+
+  /** After the graphics card forgot everything: fetched again, by the same names. */
+  private rebuild(): void {
+    this.buffers.forget();
+    if (this.shown) void this.show(this.shown, this.field);
+  }
+
+  /** The model's box in scene coordinates. */
+  box(): Box3 {
+    const bounds = this.shown?.mesh?.bounds;
+    if (!bounds) return new Box3();
+    return new Box3(this.toScene(bounds[0]), this.toScene(bounds[1]));
+  }
+
+  /** Absolute metres to scene coordinates. */
+  toScene(point: Vec3): Vector3 {
+    const origin = this.origin ?? [0, 0, 0];
+    return new Vector3(point[0] - origin[0], point[1] - origin[1], point[2] - origin[2]);
+  }
+
+  fit(points?: Vec3[]): void {
+    const box = points && points.length > 0 ? new Box3().setFromPoints(points.map((p) => this.toScene(p))) : this.box();
+    this.camera.fit(box);
+    this.invalidate();
+  }
+
+  /** Whether no part of the model's box is in the view. */
+  isOffScreen(): boolean {
+    const box = this.box();
+    if (box.isEmpty()) return false;
+    const { camera } = this.camera;
+    camera.updateMatrixWorld();
+    const matrix = new Matrix4().multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse);
+    return !new Frustum().setFromProjectionMatrix(matrix).intersectsBox(box);
+  }
+
+  /** What lies under a point of the canvas, in CSS pixels. */
+  hit(x: number, y: number): Hit | undefined {
+    const { width, height } = this.canvas.getBoundingClientRect();
+    const { camera } = this.camera;
+    this.camera.clip(this.sphere());
+    camera.setViewOffset(width, height, x, y, 1, 1);
+    this.renderer.setRenderTarget(this.pickTarget);
+    const gl = this.renderer.getContext() as WebGL2RenderingContext;
+    // An integer target is cleared by its own call.
+    gl.clearBufferuiv(gl.COLOR, 0, new Uint32Array(4));
+    this.renderer.state.buffers.depth.setMask(true);
+    gl.clearBufferfv(gl.DEPTH, 0, new Float32Array([1]));
+    this.renderer.autoClear = false;
+    this.renderer.render(this.pickScene, camera);
+    this.renderer.autoClear = true;
+    const ids = new Uint32Array(4);
+    gl.readPixels(0, 0, 1, 1, gl.RGBA_INTEGER, gl.UNSIGNED_INT, ids);
+    this.renderer.setRenderTarget(null);
+    camera.clearViewOffset();
+    const [triangle = 0, face = 0, vertex = 0, bits = 0] = ids;
+    if (triangle === 0) return undefined;
+    const depth = new Float32Array(new Uint32Array([bits]).buffer)[0] as number;
+    const point = new Vector3((2 * x) / width - 1, 1 - (2 * y) / height, 2 * depth - 1).unproject(camera);
+    return { face, vertex, triangle: triangle - 1, point };
+  }
+
+  setColours(map: MapName, range: ColourRange): void {
+    this.surface.setColours(map, range);
+    this.invalidate();
+  }
+
+  setTheme(name: ThemeName): void {
+    const theme = VIEW_THEMES[name];
+    this.scene.background = new Color(theme.background);
+    this.surface.setTheme(theme);
+    this.ground.setTheme(theme);
+    this.marks.setTheme(theme);
+    this.invalidate();
+  }
+
+  setEdges(mode: EdgeMode): void {
+    this.edgeMode = mode;
+    this.surface.setEdges(mode, this.renderer.getPixelRatio());
+    this.invalidate();
+  }
+
+  setGhost(ghost: boolean): void {
+    this.surface.setGhost(ghost);
+    this.invalidate();
+  }
+
+  setGrid(visible: boolean): void {
+    this.ground.group.visible = visible;
+    this.invalidate();
+  }
+
+  setDirections(visible: boolean): void {
+    this.surface.showDirections(visible);
+    this.invalidate();
+  }
+
+  setPicked(face: number | undefined): void {
+    this.surface.setPicked(face);
+    this.invalidate();
+  }
+
+  setSection(section: Section | undefined): void {
+    this.section = section;
+    this.updateCut();
+    this.invalidate();
+  }
+
+  private updateCut(): void {
+    const { section } = this;
+    if (!section) {
+      this.surface.setCut(undefined);
+      return;
+    }
+    const plane: [number, number, number, number] = [0, 0, 0, 0];
+    const side = section.flipped ? -1 : 1;
+    plane[section.axis] = side;
+    plane[3] = -side * (section.at - (this.origin ?? [0, 0, 0])[section.axis]);
+    this.surface.setCut(plane);
+  }
+
+  cameraState(): CameraState | undefined {
+    return this.origin ? this.camera.state(this.origin) : undefined;
+  }
+
+  /** Looks from where the camera was on an earlier page; then nothing is fitted. */
+  restoreCamera(state: CameraState): void {
+    this.origin ??= [...state.target];
+    this.camera.restore(state, this.origin);
+    this.fitted = true;
+    this.invalidate();
+  }
+
+  /** Draws a frame soon. */
+  invalidate(): void {
+    if (this.scheduled) return;
+    this.scheduled = true;
+    requestAnimationFrame(() => this.frame());
+  }
+
+  private frame(): void {
+    this.scheduled = false;
+    if (this.camera.controls.update(Math.min(this.timer.update().getDelta(), 0.1))) {
+      this.moving = true;
+      this.invalidate();
+    }
+    this.setSharpness();
+    this.draw();
+    this.onFrame();
+  }
+
+  private rest(): void {
+    this.moving = false;
+    this.onMoved();
+    this.invalidate();
+  }
+
+  private sphere(): Sphere {
+    const box = this.box();
+    if (box.isEmpty()) return new Sphere(new Vector3(), 1);
+    const sphere = box.getBoundingSphere(new Sphere());
+    sphere.radius = Math.max(sphere.radius, 1e-3);
+    return sphere;
+  }
+
+  private draw(): void {
+    this.camera.clip(this.sphere());
+    this.renderer.render(this.scene, this.camera.camera);
+  }
+
+  /** Calls back when the graphics card has finished the frames given to it. */
+  whenDrawn(done: () => void): void {
+    const gl = this.renderer.getContext() as WebGL2RenderingContext;
+    requestAnimationFrame(() => {
+      const fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+      gl.flush();
+      const look = (): void => {
+        const finished = !fence || gl.isContextLost() || gl.getSyncParameter(fence, gl.SYNC_STATUS) === gl.SIGNALED;
+        if (!finished) {
+          setTimeout(look, 4);
+          return;
+        }
+        if (fence) gl.deleteSync(fence);
+        done();
+      };
+      look();
+    });
+  }
+
+  private setSharpness(): void {
+    const heavy = (this.shown?.mesh?.triangles ?? 0) > HEAVY_TRIANGLES;
+    const wanted = heavy && this.moving ? 1 : Math.min(window.devicePixelRatio, 2);
+    if (wanted === this.renderer.getPixelRatio()) return;
+    this.renderer.setPixelRatio(wanted);
+    this.surface.setEdges(this.edgeMode, wanted);
+  }
+
+  private resize(): void {
+    const { clientWidth, clientHeight } = this.host;
+    if (clientWidth === 0 || clientHeight === 0) return;
+    this.renderer.setSize(clientWidth, clientHeight);
+    this.camera.resize(clientWidth, clientHeight);
+    // At once: a resized canvas is empty until it is drawn again.
+    this.draw();
+    this.onFrame();
+  }
+
+  /** The picture as it is now, `times` as sharp, drawn on a canvas of its own. */
+  picture(times: number): HTMLCanvasElement {
+    const before = this.renderer.getPixelRatio();
+    this.renderer.setPixelRatio(times);
+    this.surface.setEdges(this.edgeMode, times);
+    this.draw();
+    const copy = document.createElement("canvas");
+    copy.width = this.canvas.width;
+    copy.height = this.canvas.height;
+    copy.getContext("2d")?.drawImage(this.canvas, 0, 0);
+    this.renderer.setPixelRatio(before);
+    this.surface.setEdges(this.edgeMode, before);
+    this.draw();
+    return copy;
+  }
+}
