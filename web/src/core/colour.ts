@@ -19,16 +19,16 @@ export const MAP_LABELS: Record<MapName, string> = {
 const ANCHORS: Record<MapName, Lch[]> = {
   // Violet, blue, green, yellow: hue turns one way while lightness rises.
   sequential: [
-    [0.27, 0.11, 300],
-    [0.435, 0.105, 265],
-    [0.6, 0.095, 215],
+    [0.36, 0.13, 295],
+    [0.49, 0.115, 262],
+    [0.63, 0.098, 215],
     [0.765, 0.13, 160],
     [0.93, 0.16, 105],
   ],
   // Through grey: the only two hues that every kind of colour vision tells apart.
   blue_yellow: [
-    [0.27, 0.09, 262],
-    [0.49, 0.035, 262],
+    [0.35, 0.1, 262],
+    [0.53, 0.04, 262],
     [0.71, 0.06, 95],
     [0.93, 0.13, 98],
   ],

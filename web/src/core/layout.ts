@@ -11,6 +11,7 @@ export const BOX_HEIGHT = 54;
 
 /** Places nodes in columns by what they read; the same graph always gives the same picture. */
 export function layoutGraph(nodes: GraphNode[]): Layout {
+  if (nodes.length === 0) return { boxes: [], lines: [], width: 0, height: 0 };
   const graph = new Graph({ multigraph: false });
   graph.setGraph({ rankdir: "LR", nodesep: 14, ranksep: 46, marginx: 12, marginy: 12 });
   graph.setDefaultEdgeLabel(() => ({}));
