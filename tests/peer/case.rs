@@ -2,10 +2,12 @@
 
 use std::fmt;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use tessgraph_geometry::{Mesh, Unmonitored, weld_vertices};
+use tessgraph_graph::world::{DiskWorld, FileError, World};
 
-use super::settings::{self, Request};
+use super::settings::{self, Holds, LATER_PASS, Request};
 use super::{compare, even, patch};
 use crate::support::{self, Ran};
 
@@ -66,19 +68,50 @@ impl Case {
 
     pub(super) fn verdict(&self) -> Verdict {
         let settings = support::text_of(&self.folder.join("settings.json"));
-        let has = |name: &str| self.folder.join(name).is_file();
-        match settings::graph(&settings, has("weights.csv")) {
+        match settings::graph(&settings, &self.holds()) {
             Request::Refused(keys) => Verdict::Refused(keys),
-            Request::Graph { text, clipped } => self.compare(&text, clipped),
+            Request::Graph {
+                text,
+                later,
+                clipped,
+            } => self.compare(&text, later.as_deref(), clipped),
         }
     }
 
-    fn compare(&self, graph: &str, clipped: bool) -> Verdict {
-        let plan = match support::try_load(&self.name, graph) {
+    /// What the folder holds beside meshes and settings.
+    fn holds(&self) -> Holds {
+        let has = |name: &str| self.folder.join(name).is_file();
+        Holds {
+            weights: has("weights.csv"),
+            selection: has("selection.csv"),
+            base_materials: self.materials("base.obj"),
+            component_materials: self.materials("component.obj"),
+        }
+    }
+
+    /// The materials of a mesh in the order of their first faces.
+    fn materials(&self, name: &str) -> Vec<String> {
+        let text = support::text_of(&self.folder.join(name));
+        let used = text.lines().filter_map(|line| line.strip_prefix("usemtl "));
+        let mut names: Vec<String> = Vec::new();
+        for name in used.map(str::trim) {
+            if !names.iter().any(|known| known == name) {
+                names.push(name.to_owned());
+            }
+        }
+        names
+    }
+
+    fn compare(&self, graph: &str, later: Option<&str>, clipped: bool) -> Verdict {
+        let world = Folder {
+            disk: support::world_of(&self.folder),
+            later: later.unwrap_or_default().as_bytes().into(),
+        };
+        let plan = match support::try_load_in(&self.name, graph, &world) {
             Ok(plan) => plan,
             Err(found) => return Verdict::Differs(format!("{}\n{graph}", support::shown(&found))),
         };
-        let ran = Ran::run(plan, &support::world_of(&self.folder));
+        let ran = Ran::run(plan, &world);
         if !ran.evaluation.is_ok() {
             let found = support::shown(&ran.evaluation.diagnostics);
             if found.contains("SplitIntoQuads") {
@@ -88,8 +121,10 @@ impl Case {
         }
         let ours = ran.mesh("result");
         match self.reference() {
-            Ok(theirs) if graph.contains("PerVertex") => even::judge(&ran, &theirs),
-            Ok(theirs) if self.folder.join("base_eval.obj").is_file() => {
+            Ok(theirs) if later.is_none() && graph.contains("PerVertex") => {
+                even::judge(&ran, &theirs)
+            }
+            Ok(theirs) if later.is_none() && self.folder.join("base_eval.obj").is_file() => {
                 let blender = self.read("base_eval.obj").expect("a subdivided base");
                 patch::judge(&ran, &blender, &theirs)
             }
@@ -126,6 +161,21 @@ impl Case {
     /// A mesh of the case's folder.
     fn read(&self, name: &str) -> Result<Mesh, String> {
         support::read_obj(&self.folder.join(name))
+    }
+}
+
+/// The files of a case, and the graph of its later passes.
+struct Folder {
+    disk: DiskWorld,
+    later: Arc<[u8]>,
+}
+
+impl World for Folder {
+    fn read(&self, path: &str) -> Result<Arc<[u8]>, FileError> {
+        match path {
+            LATER_PASS => Ok(Arc::clone(&self.later)),
+            _ => self.disk.read(path),
+        }
     }
 }
 

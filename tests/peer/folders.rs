@@ -8,7 +8,7 @@ use super::case::{Case, Verdict};
 use crate::support::{self, workspace};
 
 /// A copy of a recorded case with some files replaced; "" leaves one out.
-fn folder(case: &str, files: &[(&str, &str)]) -> TempDir {
+pub(super) fn folder(case: &str, files: &[(&str, &str)]) -> TempDir {
     let folder = TempDir::new().expect("a folder");
     let inside = folder.path().join("case");
     std::fs::create_dir(&inside).expect("a folder");
@@ -28,13 +28,13 @@ fn folder(case: &str, files: &[(&str, &str)]) -> TempDir {
     folder
 }
 
-fn verdict(folder: &Path) -> Verdict {
+pub(super) fn verdict(folder: &Path) -> Verdict {
     let cases = Case::all_in(folder);
     assert_eq!(cases.len(), 1);
     cases[0].verdict()
 }
 
-fn recorded(case: &str, file: &str) -> String {
+pub(super) fn recorded(case: &str, file: &str) -> String {
     support::text_of(&workspace().join("tests/peer/cases").join(case).join(file))
 }
 
@@ -112,67 +112,6 @@ fn keys_without_a_counterpart_are_listed() {
         panic!("{verdict}");
     };
     assert_eq!(keys, &["bool_shapekeys", "normals_mode"]);
-}
-
-/// The add-on's mapping of triangles turned as quads with a side of no length:
-/// corners (00, 10, 11, 01) rolled, positions and normals interpolated.
-fn turned_triangles(turns: usize) -> String {
-    use tessgraph_geometry::glam::DVec3;
-    use tessgraph_geometry::normals::{NormalWeights, vertex_normals};
-    let ran = support::Ran::nodes(
-        "\"read\": ReadMesh(path: \"base.obj\"), \n\"base\": FanFaces(mesh: \"read\", order: Appended)",
-        &[("base.obj", &recorded("12_fan_hex", "base.obj"))],
-    );
-    let base = ran.mesh("base");
-    let folder = workspace().join("tests/peer/cases/12_fan_hex");
-    let component = support::read_obj(&folder.join("component.obj")).expect("a component");
-    let monitor = tessgraph_geometry::Unmonitored;
-    let normals = vertex_normals(&base, NormalWeights::Angle, true, &monitor).expect("normals");
-    let places = component.positions();
-    let low = places.iter().fold(DVec3::INFINITY, |low, p| low.min(*p));
-    let size = places
-        .iter()
-        .fold(DVec3::NEG_INFINITY, |high, p| high.max(*p))
-        - low;
-    let (mut text, count) = (String::new(), places.len());
-    for face in base.topology().faces() {
-        let [a, b, c] = [face[0], face[1], face[2]].map(|vertex| vertex as usize);
-        let mut corners = [a, b, c, c];
-        corners.rotate_right(turns);
-        let at = |values: &[DVec3], u: f64, v: f64| {
-            let [p, q, r, s] = corners.map(|corner| values[corner]);
-            p.lerp(q, u).lerp(s.lerp(r, u), v)
-        };
-        for p in places.iter() {
-            let (u, v) = ((p.x - low.x) / size.x, (p.y - low.y) / size.y);
-            let x = at(base.positions(), u, v) + p.z * at(&normals, u, v);
-            text += &format!("v {:?} {:?} {:?}\n", x.x, x.y, x.z);
-        }
-    }
-    for piece in 0..base.face_count() {
-        for face in component.topology().faces() {
-            let corner = |&vertex: &u32| (piece * count + vertex as usize + 1).to_string();
-            let corners: Vec<String> = face.iter().map(corner).collect();
-            text += &format!("f {}\n", corners.join(" "));
-        }
-    }
-    text
-}
-
-#[test]
-fn triangles_turn_as_quads_with_a_side_of_no_length() {
-    for turns in 1..4 {
-        let settings = format!(
-            "{{\"settings\": {{\"fill_mode\": \"FAN\", \"scale_mode\": \"CONSTANT\", \"rotation_shift\": {turns}}}}}"
-        );
-        let theirs = turned_triangles(turns);
-        let files = [
-            ("settings.json", settings.as_str()),
-            ("tissue.obj", theirs.as_str()),
-        ];
-        let verdict = verdict(folder("12_fan_hex", &files).path());
-        assert!(matches!(verdict, Verdict::Reproduced), "{turns}: {verdict}");
-    }
 }
 
 #[test]

@@ -9,8 +9,10 @@ mod case;
 mod compare;
 mod even;
 mod folders;
+mod mapped;
 mod patch;
 mod settings;
+mod triangles;
 
 use std::path::PathBuf;
 

@@ -69,11 +69,16 @@ pub(crate) fn try_load(name: &str, text: &str) -> Result<Plan, Vec<Diagnostic>> 
 
 /// Loads a graph that includes others of `world`, or shows what is wrong.
 pub(crate) fn load_in(name: &str, text: &str, world: &dyn World) -> Plan {
+    try_load_in(name, text, world).unwrap_or_else(|diagnostics| panic!("{}", shown(&diagnostics)))
+}
+
+pub(crate) fn try_load_in(
+    name: &str,
+    text: &str,
+    world: &dyn World,
+) -> Result<Plan, Vec<Diagnostic>> {
     let options = LoadOptions::default();
-    let loaded = tessgraph_graph::load_with(name, text.as_bytes(), NODES, &options, world);
-    loaded
-        .plan
-        .unwrap_or_else(|diagnostics| panic!("{}", shown(&diagnostics)))
+    tessgraph_graph::load_with(name, text.as_bytes(), NODES, &options, world).plan
 }
 
 /// Diagnostics as text: code, position, message.

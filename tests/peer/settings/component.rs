@@ -2,30 +2,56 @@
 
 use super::Settings;
 
-/// How the component stands in the unit square.
+/// The component, as the array takes it.
 pub(super) struct Component {
-    /// `Bounds` or `Unit`.
+    /// How it stands in the unit square: `Bounds` or `Unit`.
     pub(super) fit: &'static str,
+    /// Whether it turns in place of the domains.
+    pub(super) turned: Turned,
 }
 
-/// Makes node `component`. Also whether it was turned because its triangles
-/// cannot be: the add-on turns a triangle as a quad with a side of no length.
-pub(super) fn component(settings: &mut Settings, uv_layer: bool) -> (Component, bool) {
+/// How a component turns in place of its domains, because these cannot: the add-on
+/// turns a triangle as a quad with a side of no length, and a patch as a whole.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Turned {
+    /// Domains turn.
+    Not,
+    /// So many quarters everywhere.
+    With(f64),
+    /// By 0 to 3 quarters, as node `quarters` says.
+    ByFace,
+}
+
+impl Turned {
+    /// What the settings ask for.
+    fn of(settings: &mut Settings) -> Self {
+        let triangles = settings.is("fill_mode", "FAN") || settings.is("fill_mode", "TRI");
+        let by_weight =
+            settings.is("rotation_mode", "WEIGHT") && settings.has_group("vertex_group_rotation");
+        if triangles && (by_weight || settings.is("rotation_mode", "UV")) {
+            return Self::ByFace;
+        }
+        let stays = !triangles && !settings.is("fill_mode", "PATCH");
+        if stays || !settings.left.contains_key("rotation_shift") {
+            return Self::Not;
+        }
+        Self::With(settings.number("rotation_shift", 0.0))
+    }
+}
+
+/// Nodes `component`, or `component_0` to `component_3` where it turns by face.
+pub(super) fn component(settings: &mut Settings, uv_layer: bool) -> Component {
     settings.node("drawn", "ReadMesh(path: \"component.obj\")");
     let local = settings.is("mode", "LOCAL") || settings.is("mode", "GLOBAL");
-    let triangles = settings.is("fill_mode", "FAN") || settings.is("fill_mode", "TRI");
-    let turns = match triangles && settings.left.contains_key("rotation_shift") {
-        true => settings.number("rotation_shift", 0.0),
-        false => 0.0,
-    };
+    let turned = Turned::of(settings);
     let high = heights(settings, local);
-    let fit = if turns.abs() > 0.0 || local {
+    let fit = if turned != Turned::Not || local {
         "Unit"
     } else {
         "Bounds"
     };
     let beyond = ["bounds_x", "bounds_y"].map(|key| beyond(settings, key, local));
-    if turns.abs() > 0.0 && !local {
+    if turned != Turned::Not && !local {
         in_the_square(settings, high);
     } else if beyond == ["Extend", "Extend"] {
         settings.node("placed", &format!("Transform(mesh: \"{high}\")"));
@@ -34,25 +60,55 @@ pub(super) fn component(settings: &mut Settings, uv_layer: bool) -> (Component, 
         let fitted = format!("FitComponent(component: \"{high}\", fit: Unit, x: {x}, y: {y})");
         settings.node("placed", &fitted);
     }
-    let turned = format!(
-        "Transform(mesh: \"placed\", rotate: (0, 0, {:?}), pivot: (0.5, 0.5, 0))",
-        -90.0 * turns
-    );
-    let turned = if turns.abs() > 0.0 {
-        &turned
-    } else {
-        "Transform(mesh: \"placed\")"
-    };
-    if uv_layer {
-        settings.node("turned", turned);
-        let places = format!(
-            "EvaluateNormalsUV(component: \"turned\", source: UvLayer, axes: U, fit: {fit})"
+    let mut made = |name: &str, turns: f64| {
+        let turn = format!(
+            "Transform(mesh: \"placed\", rotate: (0, 0, {:?}), pivot: (0.5, 0.5, 0))",
+            -90.0 * turns
         );
-        settings.node("component", &places);
-    } else {
-        settings.node("component", turned);
+        let turn = match turns.abs() > 0.0 {
+            true => &turn,
+            false => "Transform(mesh: \"placed\")",
+        };
+        if uv_layer {
+            settings.node(&format!("{name}_turned"), turn);
+            let places = format!(
+                "EvaluateNormalsUV(component: \"{name}_turned\", source: UvLayer, axes: U, fit: {fit})"
+            );
+            settings.node(name, &places);
+        } else {
+            settings.node(name, turn);
+        }
+    };
+    match turned {
+        Turned::Not => made("component", 0.0),
+        Turned::With(turns) => made("component", turns),
+        Turned::ByFace => (0..4).for_each(|turns| {
+            made(&format!("component_{turns}"), f64::from(turns));
+        }),
     }
-    (Component { fit }, triangles)
+    Component { fit, turned }
+}
+
+impl Component {
+    /// The inputs of the array that name the component.
+    pub(super) fn inputs(&self) -> String {
+        match self.turned {
+            Turned::ByFace => {
+                let names = [0, 1, 2, 3].map(|turns| format!("\"component_{turns}\""));
+                let names = names.join(", ");
+                format!("components: [{names}], choose: Index, index: \"quarters\"")
+            }
+            _ => "component: \"component\"".to_owned(),
+        }
+    }
+
+    /// The input that turns components at the border so that it is on one side.
+    pub(super) fn border(&self) -> &'static str {
+        match self.turned {
+            Turned::ByFace => ", border_component: \"component_0\"",
+            _ => ", border_component: \"component\"",
+        }
+    }
 }
 
 /// The component at its height, as the node whose name is returned.

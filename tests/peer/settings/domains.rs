@@ -2,13 +2,17 @@
 
 use serde_json::Value;
 
-use super::Settings;
+use super::component::{Component, Turned};
+use super::{Settings, turns};
 
 /// How faces become domains, and how these are turned: nodes that take a mesh
 /// called MESH.
 pub(super) struct Domains {
     cut: String,
     turned: String,
+    /// Turns of components in place of the domains': a formula over corners, the
+    /// sign of each corner, and turns on top.
+    quarters: Option<(String, [f64; 4], f64)>,
 }
 
 impl Domains {
@@ -22,12 +26,22 @@ impl Domains {
         }
         settings.node(result, &self.turned.replace("MESH", &cut));
     }
+
+    /// Node `quarters` over `base`, where components turn face by face.
+    pub(super) fn turn_components(&self, settings: &mut Settings) {
+        if let Some((value, score, shift)) = &self.quarters {
+            turns::quarters(settings, value, *score, *shift);
+        }
+    }
 }
 
 /// The base as given, with its weights; for patches the limit of its
 /// subdivision, as Blender's modifier has it.
 pub(super) fn base(settings: &mut Settings) {
-    let read = "ReadMesh(path: \"base.obj\")";
+    let read = match settings.is_later {
+        true => "Transform(mesh: \"mesh\")",
+        false => "ReadMesh(path: \"base.obj\")",
+    };
     let levels = settings
         .left
         .get("base_modifiers")
@@ -50,18 +64,28 @@ pub(super) fn base(settings: &mut Settings) {
         }
         _ => settings.node("given", read),
     }
-    if settings.has_weights {
+    let mut mesh = "given";
+    // Later passes have what was carried onto their base.
+    if settings.holds.weights && !settings.is_later {
         settings.node("weights", "ReadField(path: \"weights.csv\")");
         let weighted = "SetAttribute(mesh: \"given\", name: \"w\", field: \"weights\")";
-        settings.node("read", weighted);
-    } else {
-        settings.node("read", "Transform(mesh: \"given\")");
+        settings.node("weighted", weighted);
+        mesh = "weighted";
     }
+    if settings.holds.selection && !settings.is_later {
+        let selection = "ReadField(path: \"selection.csv\", on: Faces)";
+        settings.node("selection", selection);
+        let selected =
+            format!("SetAttribute(mesh: \"{mesh}\", name: \"selected\", field: \"selection\")");
+        settings.node("marked", &selected);
+        mesh = "marked";
+    }
+    settings.node("read", &format!("Transform(mesh: \"{mesh}\")"));
 }
 
-/// The domains the settings ask for. `turned`: the component has been turned
-/// instead of them. Leaves `fill_mode` PATCH to the array.
-pub(super) fn domains(settings: &mut Settings, turned: bool) -> Domains {
+/// The domains the settings ask for, turned unless the component is instead.
+/// Leaves `fill_mode` PATCH to the array.
+pub(super) fn domains(settings: &mut Settings, component: &Component) -> Domains {
     let known = ["QUAD", "TRI", "FAN", "FRAME", "PATCH"];
     let fill = settings.one_of("fill_mode", "QUAD", &known);
     let is_patch = fill == "PATCH";
@@ -77,20 +101,58 @@ pub(super) fn domains(settings: &mut Settings, turned: bool) -> Domains {
         "PATCH" => "Transform(mesh: \"MESH\")".to_owned(),
         _ => "SplitIntoQuads(mesh: \"MESH\")".to_owned(),
     };
-    let quads = fill != "FAN" && fill != "TRI" && !is_patch;
-    let shift = match turned || is_patch {
-        true => 0.0,
-        false => settings.number("rotation_shift", 0.0),
+    let as_they_are = || "Transform(mesh: \"MESH\")".to_owned();
+    let mut quarters = None;
+    let turned = match component.turned {
+        Turned::With(_) => as_they_are(),
+        Turned::ByFace => {
+            quarters = Some(quarters_of_triangles(settings));
+            as_they_are()
+        }
+        Turned::Not if is_patch => as_they_are(),
+        Turned::Not => turned(settings, &fill),
     };
-    let turned = if quads && settings.is("rotation_mode", "UV") {
+    Domains {
+        cut,
+        turned,
+        quarters,
+    }
+}
+
+/// The node that turns quads, or all faces alike.
+fn turned(settings: &mut Settings, fill: &str) -> String {
+    let quads = fill != "FAN" && fill != "TRI";
+    let shift = settings.number("rotation_shift", 0.0);
+    if quads && settings.is("rotation_mode", "UV") {
         settings.left.remove("rotation_mode");
         format!("RotateFaces(mesh: \"MESH\", by: UvLayer, turns: {shift})")
-    } else if quads && settings.has_weights && settings.is("rotation_mode", "WEIGHT") {
+    } else if quads
+        && settings.is("rotation_mode", "WEIGHT")
+        && settings.has_group("vertex_group_rotation")
+    {
         by_weight(settings, shift)
     } else {
         format!("RotateFaces(mesh: \"MESH\", turns: {shift})")
+    }
+}
+
+/// What decides about the quarters of triangles: the gradient of the group, or of
+/// u of the base's UV layer.
+fn quarters_of_triangles(settings: &mut Settings) -> (String, [f64; 4], f64) {
+    let shift = settings.number("rotation_shift", 0.0);
+    if settings.text("rotation_mode", "") == "UV" {
+        return ("u".to_owned(), [-1.0, -1.0, 1.0, 1.0], shift);
+    }
+    settings.left.remove("vertex_group_rotation");
+    let sign = match settings.flag("invert_vertex_group_rotation") {
+        true => "1 - w",
+        false => "w",
     };
-    Domains { cut, turned }
+    let score = match settings.text("rotation_direction", "ORTHO").as_str() {
+        "DIAG" => [-1.0, 0.0, 1.0, 0.0],
+        _ => [-1.0, 1.0, 1.0, -1.0],
+    };
+    (sign.to_owned(), score, shift)
 }
 
 /// Turned along the gradient of the vertex group.

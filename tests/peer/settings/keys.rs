@@ -3,7 +3,9 @@
 use serde_json::{Map, Value, json};
 
 /// Read by nothing in the add-on, by its own account; names of objects that are
-/// files here; and what only a Blender scene shows.
+/// files here; what only a Blender scene shows; and by which distance neighbours
+/// are merged, and whether only at open edges: here they are joined by topology,
+/// at borders only and without a distance.
 const IDLE: &[&str] = &[
     "bool_advanced",
     "bool_combine",

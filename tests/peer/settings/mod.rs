@@ -1,13 +1,21 @@
 //! The add-on's settings as a graph.
 
+mod closing;
 mod component;
 mod domains;
 mod keys;
+mod passes;
 mod placing;
 #[cfg(test)]
 mod tests;
+mod turns;
+
+use std::collections::BTreeSet;
 
 use serde_json::{Map, Value};
+
+/// The graph of one pass after the first, beside the files of a case.
+pub(super) const LATER_PASS: &str = "later_pass.ron";
 
 /// What a case asks for.
 pub(super) enum Request {
@@ -15,6 +23,8 @@ pub(super) enum Request {
     Graph {
         /// Its text.
         text: String,
+        /// The graph [`LATER_PASS`] that it includes, where it asks for several passes.
+        later: Option<String>,
         /// Whether the component was cut at the square's sides.
         clipped: bool,
     },
@@ -22,16 +32,52 @@ pub(super) enum Request {
     Refused(Vec<String>),
 }
 
+/// What a case's folder holds beside base, component and target.
+#[derive(Clone, Default)]
+pub(super) struct Holds {
+    /// `weights.csv`: a vertex group of the base, one weight per vertex.
+    pub(super) weights: bool,
+    /// `selection.csv`: 1 for each selected face of the base, 0 for the others.
+    pub(super) selection: bool,
+    /// Names of the base's materials, in the order of their first faces.
+    pub(super) base_materials: Vec<String>,
+    /// Those of the component.
+    pub(super) component_materials: Vec<String>,
+}
+
 /// Settings still to be understood; what is left over is refused.
 struct Settings {
     left: Map<String, Value>,
     /// Nodes made so far, as text.
     nodes: Vec<String>,
-    /// Whether the folder has the weights of a vertex group.
-    has_weights: bool,
+    holds: Holds,
+    /// Whether this is a pass over what the pass before made.
+    is_later: bool,
+    /// Whether groups of the base are brought onto the result.
+    maps_groups: bool,
 }
 
 impl Settings {
+    fn new(document: &Value, holds: &Holds, is_later: bool) -> Self {
+        let mut left = document["settings"]
+            .as_object()
+            .cloned()
+            .unwrap_or_default();
+        let maps_groups = left.get("bool_vertex_group") == Some(&Value::Bool(true));
+        keys::drop_idle(&mut left);
+        let modifiers = &document["base_modifiers"];
+        if !modifiers.is_null() {
+            left.insert("base_modifiers".to_owned(), modifiers.clone());
+        }
+        Self {
+            left,
+            nodes: Vec::new(),
+            holds: holds.clone(),
+            is_later,
+            maps_groups,
+        }
+    }
+
     fn node(&mut self, name: &str, node: &str) {
         self.nodes.push(format!("\"{name}\": {node}"));
     }
@@ -72,11 +118,23 @@ impl Settings {
         self.left.get(key).and_then(Value::as_str) == Some(value)
     }
 
+    /// Whether the case names this vertex group of the base and brings its weights:
+    /// a folder holds one group, and a later pass has it only if it was mapped.
+    fn has_group(&self, group: &str) -> bool {
+        let names = self.left.iter().filter_map(|(key, name)| {
+            let is_name = key.starts_with("vertex_group_") && !key.ends_with("_owner");
+            is_name.then(|| name.as_str()).flatten()
+        });
+        let names: BTreeSet<&str> = names.collect();
+        let is_there = !self.is_later || self.maps_groups;
+        self.holds.weights && is_there && names.len() == 1 && self.left.contains_key(group)
+    }
+
     /// A vertex group's weight as a formula over the attribute `w`: turned round
     /// by `invert_GROUP`, and w (1 - f) + f by `GROUP_factor`. `None` unless the
     /// case names the group and brings its weights.
     fn group(&mut self, group: &str) -> Option<String> {
-        if !self.has_weights || !self.left.contains_key(group) {
+        if !self.has_group(group) {
             return None;
         }
         self.left.remove(group);
@@ -90,41 +148,7 @@ impl Settings {
 }
 
 /// The graph that asks for what the settings ask the add-on for.
-pub(super) fn graph(settings: &str, has_weights: bool) -> Request {
+pub(super) fn graph(settings: &str, holds: &Holds) -> Request {
     let document: Value = serde_json::from_str(settings).expect("settings are JSON");
-    let left = document["settings"].as_object().cloned();
-    let mut settings = Settings {
-        left: left.unwrap_or_default(),
-        nodes: Vec::new(),
-        has_weights,
-    };
-    keys::drop_idle(&mut settings.left);
-    let uv_layer = document["component_uv_layer"].as_str() == Some("Eval_Normals");
-    let modifiers = &document["base_modifiers"];
-    if !modifiers.is_null() {
-        let modifiers = modifiers.clone();
-        settings.left.insert("base_modifiers".to_owned(), modifiers);
-    }
-    let clipped = ["bounds_x", "bounds_y"].map(|key| settings.left.contains_key(key));
-    domains::base(&mut settings);
-    let (component, turned) = component::component(&mut settings, uv_layer);
-    let domains = domains::domains(&mut settings, turned);
-    domains.of("read", "base", &mut settings);
-    if settings.is("normals_mode", "OBJECT") {
-        settings.node("read_target", "ReadMesh(path: \"target.obj\")");
-        domains.of("read_target", "target", &mut settings);
-    }
-    placing::directions(&mut settings);
-    placing::array(&mut settings, &component);
-    if !settings.left.is_empty() {
-        return Request::Refused(settings.left.keys().cloned().collect());
-    }
-    let nodes = settings.nodes.join(",\n    ");
-    let text = format!(
-        "Graph(version: 1, nodes: {{\n    {nodes},\n}}, outputs: {{\"out.obj\": \"result\"}})"
-    );
-    Request::Graph {
-        text,
-        clipped: clipped.contains(&true),
-    }
+    passes::graph(&document, holds)
 }

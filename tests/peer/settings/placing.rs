@@ -1,5 +1,7 @@
 //! Directions, and the array along them.
 
+use serde_json::Value;
+
 use super::Settings;
 use super::component::Component;
 
@@ -71,56 +73,82 @@ fn along_normals(settings: &mut Settings, constant: bool) {
     }
 }
 
-/// The array, as node `result`, closed where that is asked for.
+/// The array, as node `arrayed`.
 pub(super) fn array(settings: &mut Settings, component: &Component) {
     // Files hold places in the world: both read x and y as they are.
     settings.one_of("mode", "BOUNDS", &["BOUNDS", "LOCAL", "GLOBAL"]);
-    let fit = component.fit;
     let known = ["ADAPTIVE", "CONSTANT"];
     let height = match settings.one_of("scale_mode", "ADAPTIVE", &known).as_str() {
         "CONSTANT" => "Absolute",
         _ => "Relative",
     };
-    let merge = settings.flag("merge");
-    let join = if merge { "Weld" } else { "None" };
-    let patch =
-        if settings.is("fill_mode", "PATCH") && settings.left.get("base_modifiers").is_none() {
-            settings.left.remove("fill_mode");
-            ", domain: Parent"
-        } else {
-            ""
-        };
+    let join = match settings.left.get("merge") {
+        Some(Value::Bool(true)) => "Weld",
+        _ => "None",
+    };
+    let mut more = String::new();
+    if settings.is("fill_mode", "PATCH") && settings.left.get("base_modifiers").is_none() {
+        settings.left.remove("fill_mode");
+        more += ", domain: Parent";
+    }
     // The add-on's iterations for one factor per vertex; here every vertex is solved.
-    let even = if settings.flag("even_thickness") {
-        ", compensate: PerVertex"
-    } else {
-        ""
-    };
+    if settings.flag("even_thickness") {
+        more += ", compensate: PerVertex";
+    }
     settings.left.remove("even_thickness_iter");
-    let scale = match settings.group("vertex_group_thickness") {
-        Some(weight) => {
-            let field = format!("EvaluateField(mesh: \"base\", value: \"{weight}\")");
-            settings.node("factor", &field);
-            ", scale: \"factor\""
-        }
-        None => "",
-    };
+    if let Some(weight) = settings.group("vertex_group_thickness") {
+        let field = format!("EvaluateField(mesh: \"base\", value: \"{weight}\")");
+        settings.node("factor", &field);
+        more += ", scale: \"factor\"";
+    }
+    if settings.flag("auto_rotate_boundary") {
+        more += component.border();
+    }
+    more += &only(settings);
+    if settings.maps_groups && settings.holds.weights {
+        more += ", carry: [\"w\"]";
+    }
     let array = format!(
-        "ArrayComponents(base: \"base\", component: \"component\", directions: \"directions\", \
-         fit: {fit}, height: {height}, interpolation: Linear, join: {join}{scale}{patch}{even})"
+        "ArrayComponents(base: \"base\", {}, directions: \"directions\", fit: {}, \
+         height: {height}, interpolation: Linear, join: {join}{more})",
+        component.inputs(),
+        component.fit
     );
-    // Only what is merged can be closed.
-    let known = ["NONE", "CAP", "BRIDGE", "BRIDGE_CAP"];
-    let closing = settings.one_of("close_mesh", "NONE", &known);
-    let closed = match closing.as_str() {
-        "CAP" if merge => "CapHoles(mesh: \"open\")",
-        "BRIDGE" if merge => "BridgeLoops(mesh: \"open\")",
-        "BRIDGE_CAP" if merge => {
-            settings.node("bridged", "BridgeLoops(mesh: \"open\")");
-            "CapHoles(mesh: \"bridged\")"
-        }
-        _ => return settings.node("result", &array),
-    };
-    settings.node("open", &array);
-    settings.node("result", closed);
+    settings.node("arrayed", &array);
+}
+
+/// The input that leaves faces out: those not selected, those of other materials.
+fn only(settings: &mut Settings) -> String {
+    let mut chosen = Vec::new();
+    if settings.holds.selection && !settings.is_later && settings.flag("bool_selection") {
+        chosen.push("SelectFaces(mesh: \"base\", by: Field, field: \"of_selection\"".to_owned());
+        let field = "EvaluateField(mesh: \"base\", on: Faces, value: \"selected\")";
+        settings.node("of_selection", field);
+    }
+    if settings.flag("bool_material_id") {
+        let wanted = settings.number("material_id", 0.0);
+        let names = match settings.is_later {
+            true => &settings.holds.component_materials,
+            false => &settings.holds.base_materials,
+        };
+        chosen.push(match names.get(wanted as usize) {
+            Some(name) => format!("SelectFaces(mesh: \"base\", by: Named, name: {name:?}"),
+            // Faces without a material count as of the first.
+            None => {
+                let all = names.is_empty() && wanted <= 0.0;
+                let field = format!(
+                    "EvaluateField(mesh: \"base\", on: Faces, value: {})",
+                    u8::from(all)
+                );
+                settings.node("of_material", &field);
+                "SelectFaces(mesh: \"base\", by: Field, field: \"of_material\"".to_owned()
+            }
+        });
+    }
+    let mut with = String::new();
+    for (k, node) in chosen.iter().enumerate() {
+        settings.node(&format!("chosen_{k}"), &format!("{node}{with})"));
+        with = format!(", with: \"chosen_{k}\"");
+    }
+    with.replace(", with:", ", only:")
 }

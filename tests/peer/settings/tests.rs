@@ -2,7 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use super::{Request, graph};
+use tessgraph_graph::world::MemoryWorld;
+
+use super::{Holds, LATER_PASS, Request, graph};
 use crate::support::{self, workspace};
 
 /// Settings that have a counterpart: a graph is made of them.
@@ -34,6 +36,23 @@ const UNDERSTOOD: &[&str] = &[
     r#""merge": false, "close_mesh": "BRIDGE""#,
     r#""mode": "GLOBAL", "bounds_x": "CYCLIC", "bounds_y": "CLIP""#,
     r#""component_mode": "OBJECT", "component": "C", "generator": "G", "iterations": 1"#,
+    r#""fill_mode": "FAN", "rotation_mode": "WEIGHT", "vertex_group_rotation": "W",
+       "rotation_shift": 1"#,
+    r#""fill_mode": "TRI", "rotation_mode": "WEIGHT", "vertex_group_rotation": "W",
+       "rotation_direction": "DIAG", "invert_vertex_group_rotation": true"#,
+    r#""fill_mode": "TRI", "rotation_mode": "UV""#,
+    r#""bool_selection": true"#,
+    r#""bool_material_id": true, "material_id": 1, "bool_selection": true"#,
+    r#""bool_material_id": true, "material_id": 7"#,
+    r#""auto_rotate_boundary": true"#,
+    r#""auto_rotate_boundary": true, "fill_mode": "FAN", "rotation_mode": "UV""#,
+    r#""iterations": 3, "normals_mode": "OBJECT", "scale_mode": "CONSTANT",
+       "even_thickness": true"#,
+    r#""iterations": 2, "combine_mode": "ALL", "bool_vertex_group": true,
+       "vertex_group_thickness": "W", "bool_material_id": true, "material_id": 1"#,
+    r#""merge": true, "close_mesh": "BRIDGE_CAP", "bool_vertex_group": true,
+       "vertex_group_bridge": "W", "invert_vertex_group_bridge": true, "vertex_group_cap": "W",
+       "invert_vertex_group_cap": true"#,
     r#""bool_smooth": true, "bool_vertex_group": true, "bool_materials": false, "bool_hold": true,
        "bool_random": true, "bool_combine": true, "bool_advanced": true, "cap_faces": true,
        "bridge_cuts": 3, "bridge_smoothness": 0.5, "open_edges_crease": 1.0,
@@ -62,20 +81,10 @@ const REFUSED: &[(&str, &[&str])] = &[
         r#""rotation_mode": "RANDOM", "rand_seed": 1, "rand_step": 2"#,
         &["rotation_mode", "rand_seed", "rand_step"],
     ),
-    // Components named as materials, and selections, are in the scene only.
+    // Components named as materials are in the scene only.
     (r#""component_mode": "MATERIALS""#, &["component_mode"]),
-    (r#""bool_selection": true"#, &["bool_selection"]),
-    (
-        r#""bool_material_id": true, "material_id": 1"#,
-        &["bool_material_id", "material_id"],
-    ),
     // A face's own normal for all its corners would tear the surface apart.
     (r#""normals_mode": "FACES""#, &["normals_mode"]),
-    // Triangles as quads have four senses, a triangle three.
-    (
-        r#""fill_mode": "FAN", "rotation_mode": "WEIGHT", "vertex_group_rotation": "W""#,
-        &["rotation_mode", "vertex_group_rotation"],
-    ),
     // Bending of whole normal fields by a group, and what edits seams or loops.
     (
         r#""vertex_group_scale_normals": "W", "invert_vertex_group_scale_normals": true"#,
@@ -92,13 +101,28 @@ const REFUSED: &[(&str, &[&str])] = &[
         &["vertex_group_bridge", "invert_vertex_group_bridge"],
     ),
     (
-        r#""vertex_group_cap": "W", "invert_vertex_group_cap": true"#,
+        r#""merge": true, "close_mesh": "CAP", "vertex_group_cap": "W",
+           "invert_vertex_group_cap": true"#,
         &["vertex_group_cap", "invert_vertex_group_cap"],
     ),
-    (r#""auto_rotate_boundary": true"#, &["auto_rotate_boundary"]),
+    // One file holds one group, and what a pass made has no selection.
     (
-        r#""iterations": 2, "patch_subs": 1, "combine_mode": "ALL""#,
-        &["iterations", "patch_subs", "combine_mode"],
+        r#""vertex_group_thickness": "W", "merge": true, "close_mesh": "CAP",
+           "bool_vertex_group": true, "vertex_group_cap": "V""#,
+        &["vertex_group_thickness", "vertex_group_cap"],
+    ),
+    (
+        r#""iterations": 2, "bool_selection": true"#,
+        &["bool_selection"],
+    ),
+    (
+        r#""iterations": 2, "vertex_group_thickness": "W""#,
+        &["vertex_group_thickness"],
+    ),
+    // What of a pass counts as unused is in the scene only.
+    (
+        r#""iterations": 2, "combine_mode": "UNUSED""#,
+        &["combine_mode"],
     ),
     // Vectors to a target that are smoothed at their own lengths.
     (
@@ -111,8 +135,16 @@ const REFUSED: &[(&str, &[&str])] = &[
     ),
 ];
 
+/// For a folder that holds all it may.
 fn request(settings: &str) -> Request {
-    graph(&format!("{{\"settings\": {{{settings}}}}}"), true)
+    let names = |names: [&str; 2]| names.map(str::to_owned).to_vec();
+    let holds = Holds {
+        weights: true,
+        selection: true,
+        base_materials: names(["Glass", "Stone"]),
+        component_materials: names(["Glass", "Steel"]),
+    };
+    graph(&format!("{{\"settings\": {{{settings}}}}}"), &holds)
 }
 
 #[test]
@@ -120,8 +152,10 @@ fn what_has_a_counterpart_becomes_a_graph() {
     for settings in UNDERSTOOD {
         match request(settings) {
             Request::Refused(keys) => panic!("{settings}: refused {keys:?}"),
-            Request::Graph { text, .. } => {
-                let plan = support::try_load("case.ron", &text);
+            Request::Graph { text, later, .. } => {
+                let mut world = MemoryWorld::default();
+                world.insert(LATER_PASS, later.unwrap_or_default().as_bytes());
+                let plan = support::try_load_in("case.ron", &text, &world);
                 let found = plan.err().map(|found| support::shown(&found));
                 assert_eq!(found, None, "{settings}\n{text}");
             }
