@@ -139,6 +139,95 @@ fn walls_stand_on_the_border() {
 }
 
 #[test]
+fn corners_take_another_component_than_sides() {
+    let ran = ran("component: \"low\", border_components: [\"wall\", \"high\"]");
+    // Rows of four: corners have two border edges, sides one.
+    let expected = [2, 1, 1, 2, 1, 0, 0, 1, 2, 1, 1, 2];
+    let expected: Vec<(i64, i64)> = (0..).zip(expected).collect();
+    assert_eq!(placed(&ran.mesh("array")), expected);
+}
+
+/// The grid's faces as fans of four triangles each.
+fn fans(array: &str) -> Mesh {
+    let nodes = body(array).replace(
+        "\"base\": Grid(cells: [4, 3], size: [4, 3])",
+        "\"plan\": Grid(cells: [4, 3], size: [4, 3]), \"base\": FanFaces(mesh: \"plan\")",
+    );
+    let ran = Ran::nodes(&nodes, &[]);
+    let found = &ran.evaluation.diagnostics;
+    assert!(ran.evaluation.is_ok(), "{}", support::shown(found));
+    Mesh::clone(&ran.mesh("array"))
+}
+
+#[test]
+fn triangles_of_a_fan_choose_alike() {
+    for choose in [
+        "choose: Random, seed: 3",
+        "choose: Index, index: \"even\"",
+        "choose: Gradient, gradient: \"along\", randomness: 0.7",
+    ] {
+        let differing = |per: &str| {
+            let mesh = fans(&format!("{TWO}, {choose}{per}"));
+            let placed = placed(&mesh);
+            assert_eq!(placed.len(), 48);
+            let fans = placed.chunks(4);
+            fans.filter(|fan| fan.iter().any(|one| one.1 != fan[0].1))
+                .count()
+        };
+        assert!(differing("") > 0, "{choose}: each for itself");
+        assert_eq!(differing(", per: Source"), 0, "{choose}");
+    }
+    // Not all fans take the same.
+    let alike = placed(&fans(&format!(
+        "{TWO}, choose: Random, seed: 3, per: Source"
+    )));
+    let high = alike.iter().filter(|pair| pair.1 == 1).count();
+    assert!(high > 0 && high < 48, "{high}");
+}
+
+#[test]
+fn faces_turn_to_the_border_or_with_their_fan() {
+    let nodes = |rotate: &str| {
+        let body = format!(
+            "\"plan\": Grid(cells: [4, 3], size: [4, 3], centre: false),
+             \"fan\": FanFaces(mesh: \"plan\"),
+             \"out\": {rotate}"
+        );
+        Mesh::clone(&Ran::nodes(&body, &[]).mesh("out"))
+    };
+    let turned = nodes("RotateFaces(mesh: \"plan\", by: Border)");
+    for face in 0..12 {
+        let [a, b] = [0, 1].map(|k| turned.positions()[turned.face(face)[k] as usize]);
+        let both = |x: f64, y: f64, at: f64| (x - at).abs() + (y - at).abs() < 1e-12;
+        let on_rim = both(a.x, b.x, 0.0) || both(a.x, b.x, 4.0);
+        let on_rim = on_rim || both(a.y, b.y, 0.0) || both(a.y, b.y, 3.0);
+        assert_eq!(on_rim, ![5, 6].contains(&face), "face {face}");
+    }
+    // Triangle k of a fan starts at corner k of its face, turned by the same number.
+    let plan = nodes("FanFaces(mesh: \"plan\")");
+    let turns = |per: &str| {
+        let mesh = nodes(&format!(
+            "RotateFaces(mesh: \"fan\", by: Random, seed: 5{per})"
+        ));
+        let turn = |face: usize| {
+            let first = plan.face(face)[0];
+            mesh.face(face).iter().position(|&vertex| vertex == first)
+        };
+        (0..48).map(turn).collect::<Vec<_>>()
+    };
+    let differing = |turns: &[Option<usize>]| {
+        turns
+            .chunks(4)
+            .filter(|fan| fan.iter().any(|one| *one != fan[0]))
+            .count()
+    };
+    assert!(differing(&turns("")) > 6);
+    let alike = turns(", per: Source");
+    assert_eq!(differing(&alike), 0);
+    assert!(alike.iter().any(|turn| *turn != alike[0]), "{alike:?}");
+}
+
+#[test]
 fn attributes_come_along() {
     let nodes = body("component: \"low\", carry: [\"sun\"]").replace(
         "\"base\": Grid(cells: [4, 3], size: [4, 3])",
@@ -193,6 +282,14 @@ fn what_cannot_be_chosen_is_said() {
         (
             "components: [\"low\", \"high\"], choose: Material, materials: [\"a\"]",
             "1 materials for 2 components",
+        ),
+        (
+            "component: \"low\", border_component: \"wall\", border_components: [\"high\"]",
+            "either `border_component` or `border_components`",
+        ),
+        (
+            "components: [\"low\", \"high\"], choose: Random, per: Source",
+            "no `source_face`",
         ),
         ("component: \"low\", domain: Parent", "parent"),
         ("component: \"low\", carry: [\"nothing\"]", "nothing"),

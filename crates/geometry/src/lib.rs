@@ -46,9 +46,9 @@ pub use array::{
     ArrayCounts, ArrayDomain, ArrayOptions, ArrayPoint, Arrayed, BASE_FACE, COMPONENT,
     COMPONENT_FACE, Displace, Height, Interpolation, Join, JoinReport, NO_COMPONENT, PANEL,
     PatchGrids, PerVertexOptions, PerVertexReport, Straight, array_compensated, array_components,
-    array_components_with, array_counts, border_faces, border_patch_turns, border_patches,
-    border_turns, choose_along, choose_at_border, choose_by_index, choose_by_material,
-    choose_random,
+    array_components_with, array_counts, border_edge_counts, border_faces, border_patch_turns,
+    border_side_counts, border_turns, choose_along, choose_at_border, choose_by_index,
+    choose_by_material, choose_random,
 };
 pub use directions::{DirectionSource, Directions};
 pub use displace::displace_vertices;
@@ -60,7 +60,9 @@ pub use fit::{
 };
 pub use glam;
 pub use join::join;
-pub use mesh::{Attribute, AttributeValues, Domain, Labels, Material, Mesh, NO_LABEL, Triangles};
+pub use mesh::{
+    Attribute, AttributeValues, Domain, Labels, Material, Mesh, NO_LABEL, Triangles,
+};
 pub use monitor::{Monitor, Unmonitored};
 pub use naming::faces_named;
 pub use normals_uv::{
@@ -68,7 +70,7 @@ pub use normals_uv::{
 };
 pub use offset::{PART, ShellPart, offset_mesh};
 pub use topology::{Adjacency, NO_EDGE, Topology};
-pub use weld::{Welded, weld_vertices};
+pub use weld::{Welded, weld_border_vertices, weld_vertices};
 
 /// Attributes by which operations record where elements come from; files whose
 /// format has no place for them lose nothing that a user put there.

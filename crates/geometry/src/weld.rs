@@ -49,15 +49,49 @@ pub fn weld_vertices(
     distance: f64,
     monitor: &dyn Monitor,
 ) -> Result<Welded, GeometryError> {
-    if !(distance >= 0.0 && distance.is_finite()) {
-        return Err(GeometryError::OutOfRange {
-            what: "the distance",
-            value: distance,
-            requirement: "it must be finite and not negative",
-        });
-    }
+    check_distance(distance)?;
     let target = clusters(mesh.positions(), distance, monitor)?;
     merge_vertices(mesh, &target, monitor)
+}
+
+/// [`weld_vertices`] for vertices on open borders and those of no face only: what
+/// is inside a surface stays, however close it lies.
+///
+/// # Errors
+/// As there.
+pub fn weld_border_vertices(
+    mesh: &Mesh,
+    distance: f64,
+    monitor: &dyn Monitor,
+) -> Result<Welded, GeometryError> {
+    check_distance(distance)?;
+    let adjacency = mesh.topology().adjacency_with(monitor)?;
+    let is_open = |&vertex: &u32| {
+        let vertex = vertex as usize;
+        adjacency.is_boundary_vertex(vertex) || adjacency.vertex_corners(vertex).is_empty()
+    };
+    let open: Vec<u32> = (0..mesh.vertex_count() as u32).filter(is_open).collect();
+    let positions: Vec<DVec3> = open
+        .iter()
+        .map(|&vertex| mesh.positions()[vertex as usize])
+        .collect();
+    let lowest = clusters(&positions, distance, monitor)?;
+    let mut target: Vec<u32> = (0..mesh.vertex_count() as u32).collect();
+    for (&vertex, lowest) in open.iter().zip(lowest) {
+        target[vertex as usize] = open[lowest as usize];
+    }
+    merge_vertices(mesh, &target, monitor)
+}
+
+fn check_distance(distance: f64) -> Result<(), GeometryError> {
+    if distance >= 0.0 && distance.is_finite() {
+        return Ok(());
+    }
+    Err(GeometryError::OutOfRange {
+        what: "the distance",
+        value: distance,
+        requirement: "it must be finite and not negative",
+    })
 }
 
 /// Joins every vertex to `target[vertex]`, which must be its own target and not
@@ -358,6 +392,27 @@ mod tests {
                 .face(0),
             [0, 1, 2]
         );
+    }
+
+    #[test]
+    fn at_borders_only_what_is_open_is_joined() {
+        // Two fans of four triangles whose centres and whose sides lie close.
+        let around = |x: f64| {
+            let places = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.5, 0.5]];
+            places.map(|[u, v]| [u + x, v, 0.0])
+        };
+        let mut places = [around(0.0), around(1.0)].concat();
+        // A bump that lies over the other's centre.
+        places[4] = [1.5, 0.5, 0.0];
+        let fan = |first: u32| [0, 1, 2, 3].map(|k| [first + k, first + (k + 1) % 4, first + 4]);
+        let faces = [fan(0), fan(5)].concat();
+        let mesh = Mesh::from_faces(places, &faces).unwrap();
+        let all = weld_vertices(&mesh, 0.0, &Unmonitored).unwrap();
+        assert_eq!((all.joined, all.mesh.vertex_count()), (3, 7));
+        let open = weld_border_vertices(&mesh, 0.0, &Unmonitored).unwrap();
+        assert_eq!((open.joined, open.mesh.vertex_count()), (2, 8));
+        assert_eq!(open.mesh.face(4), [1, 5, 7]);
+        assert!(weld_border_vertices(&mesh, f64::NAN, &Unmonitored).is_err());
     }
 
     #[test]

@@ -14,7 +14,7 @@ use tessgraph_macros::{Choice, Inputs, Outputs};
 
 use crate::compensate_thickness::BorderChoice;
 use crate::fit_component::{FitChoice, warn_of_outside, warn_of_shape};
-use crate::support::choice_of_components::{Cells, Chooser};
+use crate::support::choice_of_components::{Cells, Chooser, Per, first_of_source};
 
 /// Maps a component to every face of a base surface (paper, figure 1).
 ///
@@ -37,8 +37,9 @@ use crate::support::choice_of_components::{Cells, Chooser};
 /// faces of each coarse one: it follows the rounded surface inside a panel.
 ///
 /// Several `components` are chosen per face with `choose`; faces at the border can
-/// take a `border_component`, turned so that its side v = 0 lies on the border, and
-/// `only` leaves faces out. Over parents, fields and materials of faces are read at
+/// take a `border_component`, or one of `border_components` by how many of their edges
+/// lie on it, turned so that the side v = 0 is on the border; `only` leaves faces out.
+/// `per: Source` lets all triangles of a fan choose alike. Over parents, fields and materials of faces are read at
 /// the first small face of each.
 ///
 /// ```ron
@@ -102,8 +103,15 @@ pub(crate) struct ArrayComponents {
     /// Another seed, another choice; a face keeps its own while others come and go.
     #[input(default = 0, only_with(choose = Random | Gradient))]
     seed: u32,
+    /// Whether faces that were made of one face choose alike.
+    #[input(default = Face, only_with(choose = Index | Material | Random | Gradient))]
+    per: Per,
     /// Component of faces with an edge on an open border.
     border_component: Option<Arc<Mesh>>,
+    /// Components of border faces by the number of their border edges: the first for
+    /// one, the second for two, as in a corner; the last for more. In place of
+    /// `border_component`.
+    border_components: Option<Vec<Arc<Mesh>>>,
     /// Whether border components are turned so that their side v = 0 lies on the
     /// border; at a corner the side u = 1 does, too.
     #[input(default = true)]
@@ -287,7 +295,7 @@ impl Node for ArrayComponents {
 }
 
 impl ArrayComponents {
-    /// The components in the order of their numbers, then that of the border.
+    /// The components in the order of their numbers, then those of the border.
     fn all_components(&self) -> Result<Vec<&Mesh>, NodeError> {
         let several = self.components.as_deref().unwrap_or_default();
         let mut all: Vec<&Mesh> = match (&self.component, several) {
@@ -307,27 +315,48 @@ impl ArrayComponents {
                            `choose: Index`, `Material`, `Random` or `Gradient`";
             return Err(NodeError::new(message).at_input("choose"));
         }
-        all.extend(self.border_component.as_deref());
+        all.extend(self.at_border()?);
         Ok(all)
     }
 
+    /// The components of the border, by the number of border edges.
+    fn at_border(&self) -> Result<Vec<&Mesh>, NodeError> {
+        let several = self.border_components.as_deref().unwrap_or_default();
+        match (&self.border_component, several) {
+            (Some(_), [_, ..]) => {
+                let message = "give either `border_component` or `border_components`, not both";
+                Err(NodeError::new(message).at_input("border_components"))
+            }
+            (one, several) => Ok(one.iter().chain(several).map(Arc::as_ref).collect()),
+        }
+    }
+
     /// The component of each cell and, where borders turn, its quarter turns.
-    /// `components` counts that of the border.
+    /// `components` counts those of the border.
     fn placements(
         &self,
         parents: Option<&Parents>,
         components: usize,
     ) -> Result<(Vec<u32>, Option<Vec<u8>>), NodeError> {
+        let alike = match self.per {
+            Per::Face => None,
+            Per::Source if parents.is_some() => {
+                let message = "over parents nothing is made of one face: leave out `per`";
+                return Err(NodeError::new(message).at_input("per"));
+            }
+            Per::Source => Some(first_of_source(&self.base, "per")?),
+        };
         let cells = Cells {
             base: &self.base,
             parents,
+            alike: alike.as_deref(),
         };
-        let has_border = self.border_component.is_some();
-        let inner = components - usize::from(has_border);
+        let border = self.at_border()?.len();
+        let inner = components - border;
         let mut choice = cells.choose(&self.chooser()?, inner)?;
         let mut turns = None;
-        if has_border {
-            let turned = cells.take_border(&mut choice, inner as u32);
+        if border > 0 {
+            let turned = cells.take_border(&mut choice, inner as u32, border as u32);
             turns = self.turn_border.then_some(turned);
         }
         cells.keep_only(&mut choice, &self.only)?;

@@ -4,15 +4,17 @@ use std::sync::Arc;
 
 use tessgraph_geometry::domains::{self, Along, chosen_faces};
 use tessgraph_geometry::glam::DVec2;
-use tessgraph_geometry::{Amount, AttributeValues, Domain, Field, Mesh};
+use tessgraph_geometry::{Amount, AttributeValues, Domain, Field, Mesh, border_turns};
 use tessgraph_graph::{EvalCx, Node, NodeError};
 use tessgraph_macros::{Choice, Inputs};
+
+use crate::support::choice_of_components::{Per, first_of_source};
 
 /// Turns the components of faces by quarters, by choosing their first corner.
 ///
 /// After one turn the corner (0, 0) is where (0, 1) was. The surface stays the
 /// same; a triangle turns by thirds. Turns are fixed, random by a seed, along a
-/// layer of texture coordinates, or uphill on a field.
+/// layer of texture coordinates, uphill on a field, or towards open borders.
 ///
 /// ```ron
 /// Graph(version: 1, nodes: {
@@ -40,6 +42,9 @@ pub(crate) struct RotateFaces {
     /// Every random turn counts this many times: 2 turns by halves only.
     #[input(default = 1, min = 1, max = 1000, only_with(by = Random))]
     step: u32,
+    /// Whether faces that were made of one face, the triangles of a fan, turn alike.
+    #[input(default = Face, only_with(by = Random))]
+    per: Per,
     /// Name of the layer of texture coordinates; left out, the first.
     #[input(only_with(by = UvLayer))]
     layer: Option<String>,
@@ -65,6 +70,9 @@ pub(crate) enum By {
     UvLayer,
     /// The component points to where the field grows.
     Gradient,
+    /// The side v = 0 of quads at an open border lies on it; at a corner u = 1 does,
+    /// too. Faces inside stay.
+    Border,
 }
 
 /// What points uphill.
@@ -114,8 +122,19 @@ impl RotateFaces {
         let mesh = &self.mesh;
         match self.by {
             By::Turns => Ok(vec![0; mesh.face_count()]),
+            By::Border => Ok(border_turns(mesh.topology())
+                .into_iter()
+                .map(i64::from)
+                .collect()),
             By::Random => {
-                let mut turns = domains::turns_random(mesh, self.seed.into());
+                let seed = u64::from(self.seed);
+                let mut turns = match self.per {
+                    Per::Face => domains::turns_random(mesh, seed),
+                    Per::Source => {
+                        let alike = first_of_source(mesh, "per")?;
+                        domains::turns_random_as(mesh, &alike, seed)
+                    }
+                };
                 turns
                     .iter_mut()
                     .for_each(|turn| *turn *= i64::from(self.step));

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glam::DVec3;
-use tessgraph_geometry::{Directions, Mesh, directions};
+use tessgraph_geometry::{Amount, Directions, Mesh, directions};
 use tessgraph_graph::{EvalCx, Node, NodeError};
 use tessgraph_macros::Inputs;
 
@@ -27,6 +27,10 @@ pub(crate) struct ScaleDirections {
     directions: Arc<Directions>,
     /// Factors along x, y and z.
     factors: DVec3,
+    /// How much each vertex takes part: 0 leaves a direction as it is, 1 scales it
+    /// fully; a number or one per vertex.
+    #[input(default = 1.0, min = 0, max = 1)]
+    amount: Amount,
     /// Whether the results are brought back to length 1.
     #[input(default = true)]
     unit: bool,
@@ -37,7 +41,14 @@ impl Node for ScaleDirections {
 
     fn eval(self, cx: &EvalCx<'_>) -> Result<Self::Output, NodeError> {
         let (mesh, from, monitor) = (&self.mesh, &self.directions, cx.monitor());
-        let found = directions::scale_directions(mesh, from, self.factors, self.unit, monitor)?;
+        let found = directions::scale_directions(
+            mesh,
+            from,
+            self.factors,
+            &self.amount,
+            self.unit,
+            monitor,
+        )?;
         Ok(Arc::new(found))
     }
 }

@@ -2,7 +2,9 @@
 
 use std::sync::Arc;
 
-use tessgraph_geometry::diffuse::{self, Anisotropy, DiffuseOptions, Grain, Laplacian, Scheme};
+use tessgraph_geometry::diffuse::{
+    self, Anisotropy, DiffuseOptions, Grain, Laplacian, Lengths, Scheme,
+};
 use tessgraph_geometry::normals::{self, NormalWeights};
 use tessgraph_geometry::{Amount, DirectionSource, Directions, Mesh, list_ids};
 use tessgraph_graph::{EvalCx, Node, NodeError};
@@ -11,7 +13,7 @@ use tessgraph_macros::{Choice, Inputs};
 /// Diffuses directions over the mesh so that offset directions stop crossing.
 ///
 /// Each pass moves every direction towards the mean of its neighbours' over
-/// edges and brings it back to length 1. Many passes make directions parallel;
+/// edges and brings it back to length 1, or to the length it had (`lengths: Keep`). Many passes make directions parallel;
 /// then some may turn against a face, which is inverted thickness: they are
 /// counted in a warning (paper §3.1 and §5).
 ///
@@ -60,6 +62,9 @@ pub(crate) struct SmoothNormals {
     layer: String,
     /// Directions that say where u runs, instead of a UV layer.
     along: Option<Arc<Directions>>,
+    /// How long the results are.
+    #[input(default = Unit)]
+    lengths: LengthsChoice,
     /// Whether every direction is kept in front of all faces round its vertex, so
     /// that none is inverted.
     #[input(default = false)]
@@ -78,6 +83,18 @@ pub(crate) enum SchemeChoice {
     /// One implicit step of heat flow over a length in model units: the same result
     /// on a coarse and on a fine mesh.
     Implicit,
+}
+
+/// How long diffused directions are.
+#[derive(Clone, Copy, Choice)]
+#[choice(into = Lengths)]
+pub(crate) enum LengthsChoice {
+    /// One.
+    Unit,
+    /// As long as at the start: directions towards a target still reach as far.
+    Keep,
+    /// Diffused together with their senses, so that a step in length fades, too.
+    Diffuse,
 }
 
 /// Which neighbours count.
@@ -108,6 +125,7 @@ impl Node for SmoothNormals {
             weights: self.weights.clone(),
             anisotropy: self.preference(),
             keep_side: self.keep_side,
+            lengths: self.lengths.into(),
         };
         let smooth = diffuse::diffuse(&self.mesh, &start, &options, cx.monitor())?;
         let inverted = diffuse::inverted(&self.mesh, &smooth, cx.monitor())?;

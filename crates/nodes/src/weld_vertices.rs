@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use tessgraph_geometry::Mesh;
+use tessgraph_geometry::{Mesh, weld_border_vertices, weld_vertices};
 use tessgraph_graph::{EvalCx, Node, NodeError};
 use tessgraph_macros::{Inputs, Outputs};
 
@@ -27,6 +27,10 @@ pub(crate) struct WeldVertices {
     /// Distance up to which vertices are joined; 0 joins equal places only.
     #[input(default = 1e-6, min = 0, unit = length)]
     distance: f64,
+    /// Whether only vertices on open borders, and those of no face, are joined, so
+    /// that details inside a surface are safe from a wide distance.
+    #[input(default = false)]
+    border_only: bool,
 }
 
 /// The welded mesh.
@@ -44,7 +48,11 @@ impl Node for WeldVertices {
     type Output = WeldedMesh;
 
     fn eval(self, cx: &EvalCx<'_>) -> Result<Self::Output, NodeError> {
-        let welded = tessgraph_geometry::weld_vertices(&self.mesh, self.distance, cx.monitor())?;
+        let (mesh, distance, monitor) = (&self.mesh, self.distance, cx.monitor());
+        let welded = match self.border_only {
+            true => weld_border_vertices(mesh, distance, monitor)?,
+            false => weld_vertices(mesh, distance, monitor)?,
+        };
         Ok(WeldedMesh {
             mesh: Arc::new(welded.mesh),
             joined: welded.joined,

@@ -149,9 +149,17 @@ pub fn choose_at_border(topology: &Topology, choice: &[u32], component: u32) -> 
 
 /// Whether each face has a border edge.
 pub fn border_faces(topology: &Topology) -> Vec<bool> {
-    (0..topology.face_count())
-        .map(|face| (0..topology.face(face).len()).any(|k| is_border(topology, face, k)))
-        .collect()
+    let counts = border_edge_counts(topology).into_iter();
+    counts.map(|count| count > 0).collect()
+}
+
+/// How many border edges each face has.
+pub fn border_edge_counts(topology: &Topology) -> Vec<u32> {
+    let count = |face: usize| {
+        let edges = 0..topology.face(face).len();
+        edges.filter(|&k| is_border(topology, face, k)).count() as u32
+    };
+    (0..topology.face_count()).map(count).collect()
 }
 
 /// Quarter turns that bring the border of each face to its side v = 0, 0 for
@@ -167,11 +175,12 @@ pub fn border_turns(topology: &Topology) -> Vec<u8> {
     (0..topology.face_count()).map(turns).collect()
 }
 
-/// As [`border_faces`] for the parents of a subdivided mesh; `false` for those
-/// without a whole grid.
-pub fn border_patches(parents: &Parents) -> Vec<bool> {
+/// As [`border_edge_counts`] for the sides of the parents of a subdivided mesh; 0
+/// for those without a whole grid.
+pub fn border_side_counts(parents: &Parents) -> Vec<u32> {
     let sides = (0..parents.len()).map(|patch| patch_sides(parents, patch));
-    sides.map(|sides| sides.contains(&true)).collect()
+    let count = |sides: [bool; 4]| sides.into_iter().map(u32::from).sum();
+    sides.map(count).collect()
 }
 
 /// As [`border_turns`] for the parents of a subdivided mesh.
@@ -265,7 +274,7 @@ mod tests {
             };
             let fine = subdivide(&base, options, &crate::Unmonitored).unwrap();
             let (topology, parents) = (base.topology(), &fine.parents);
-            assert_eq!(border_patches(parents), border_faces(topology));
+            assert_eq!(border_side_counts(parents), border_edge_counts(topology));
             assert_eq!(border_patch_turns(parents), border_turns(topology));
         }
     }
@@ -276,6 +285,8 @@ mod tests {
         let border = border_faces(base.topology());
         assert_eq!(border.iter().filter(|&&at| at).count(), 8);
         assert!(!border[4]);
+        let counts = border_edge_counts(base.topology());
+        assert_eq!(counts, [2, 1, 2, 1, 0, 1, 2, 1, 2]);
         for (face, turns) in border_turns(base.topology()).into_iter().enumerate() {
             let corners = base.face(face);
             let first = corners[(4 - turns as usize) % 4];

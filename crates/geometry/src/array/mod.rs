@@ -13,8 +13,9 @@ mod tests;
 mod weld;
 
 pub use choose::{
-    NO_COMPONENT, border_faces, border_patch_turns, border_patches, border_turns, choose_along,
-    choose_at_border, choose_by_index, choose_by_material, choose_random,
+    NO_COMPONENT, border_edge_counts, border_faces, border_patch_turns, border_side_counts,
+    border_turns, choose_along, choose_at_border, choose_by_index, choose_by_material,
+    choose_random,
 };
 pub use grids::PatchGrids;
 pub use layout::{ArrayCounts, array_counts};

@@ -17,14 +17,14 @@ const ITERATIONS: usize = 20_000;
 /// Weights below this hold a vertex fast; the system would lose its digits.
 const FIXED: f64 = 1e-9;
 
-/// Solves (M / w + distance² C) n = M / w n0 and normalises.
+/// Solves (M / w + distance² C) n = M / w n0.
 ///
 /// Dividing row i by its weight w_i keeps the system symmetric and lets the
 /// weight scale the diffusion at that vertex, as it does in the explicit
 /// schemes; vertices of weight 0 are fixed values.
 pub(super) fn solve(
     mesh: &Mesh,
-    start: Vec<DVec3>,
+    start: &[DVec3],
     distance: f64,
     weights: &Amount,
     monitor: &dyn Monitor,
@@ -42,18 +42,24 @@ pub(super) fn solve(
         mass: &mass,
         scale: distance * distance,
     };
-    let solution = system.conjugate_gradient(&start, monitor)?;
-    let unit = |(solved, start): (DVec3, &DVec3)| match unit_or_zero(solved) {
-        DVec3::ZERO => *start,
-        unit => unit,
-    };
-    let mut field: Vec<DVec3> = solution.into_iter().zip(&start).map(unit).collect();
+    let mut field = system.conjugate_gradient(start, monitor)?;
     for vertex in 0..field.len() {
         if mass[vertex] == f64::INFINITY {
             field[vertex] = start[vertex];
         }
     }
     Ok(field)
+}
+
+/// Brings what was solved to unit length; where nothing is left, the unit vector it
+/// started from. Fixed vertices are left as they are.
+pub(super) fn to_unit(solved: Vec<DVec3>, start: &[DVec3]) -> Vec<DVec3> {
+    let unit = |(solved, &start): (DVec3, &DVec3)| match unit_or_zero(solved) {
+        _ if solved == start => start,
+        DVec3::ZERO => start,
+        unit => unit,
+    };
+    solved.into_iter().zip(start).map(unit).collect()
 }
 
 /// A third of the area of the triangles round each vertex.

@@ -31,6 +31,19 @@ pub enum Laplacian {
     Cotangent,
 }
 
+/// How long diffused directions are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Lengths {
+    /// One.
+    #[default]
+    Unit,
+    /// As long as at the start, each vertex its own: only senses are diffused.
+    Keep,
+    /// Diffused together with their senses, as vectors: those of opposite
+    /// directions cancel.
+    Diffuse,
+}
+
 /// How directions are diffused.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Scheme {
@@ -87,6 +100,8 @@ pub struct DiffuseOptions<'a> {
     pub anisotropy: Option<Anisotropy<'a>>,
     /// Keeps every direction in front of all faces round its vertex.
     pub keep_side: bool,
+    /// How long the results are.
+    pub lengths: Lengths,
 }
 
 impl Default for DiffuseOptions<'_> {
@@ -96,11 +111,13 @@ impl Default for DiffuseOptions<'_> {
             weights: Amount::Constant(1.0),
             anisotropy: None,
             keep_side: false,
+            lengths: Lengths::Unit,
         }
     }
 }
 
-/// Diffuses `start` over `mesh` (§3.1): unit directions whose lines cross less.
+/// Diffuses `start` over `mesh` (§3.1): directions whose lines cross less, of unit
+/// length unless [`Lengths`] say otherwise.
 ///
 /// Isolated vertices keep their vectors; a vertex of a face that starts
 /// without direction takes its neighbours'. Where neighbours cancel a
@@ -126,6 +143,8 @@ impl Default for DiffuseOptions<'_> {
 /// [`GeometryError::Compensated`], [`GeometryError::OtherTopology`],
 /// [`GeometryError::OutOfRange`] for settings and weights, the errors of
 /// [`Amount::check`]; [`GeometryError::NoAttribute`] for a missing layer,
+/// [`GeometryError::NonFiniteValue`] where `EdgeSum` lets lengths grow beyond the
+/// range of numbers,
 /// [`GeometryError::NoConvergence`] from `Implicit`, [`GeometryError::Cancelled`].
 pub fn diffuse(
     mesh: &Mesh,
@@ -140,10 +159,44 @@ pub fn diffuse(
     } else {
         None
     };
-    let field: Vec<DVec3> = start.outward().iter().map(|&v| unit_once(v)).collect();
-    let weights = &options.weights;
-    let anisotropy = options.anisotropy.as_ref();
-    let field = match options.scheme {
+    let field = match options.lengths {
+        Lengths::Diffuse => start.outward().to_vec(),
+        Lengths::Unit | Lengths::Keep => start.outward().iter().map(|&v| unit_once(v)).collect(),
+    };
+    let field = by_scheme(mesh, field, options, cones.as_ref(), monitor)?;
+    let field = match (&cones, options.scheme) {
+        // `Mean` keeps the side in every pass.
+        (Some(cones), Scheme::EdgeSum { .. } | Scheme::Implicit { .. }) => {
+            cones.limit_all(field, monitor)?
+        }
+        _ => field,
+    };
+    let field = match options.lengths {
+        Lengths::Keep => {
+            let pairs = field.iter().zip(start.outward().iter());
+            pairs.map(|(unit, start)| *unit * start.length()).collect()
+        }
+        Lengths::Unit | Lengths::Diffuse => field,
+    };
+    Directions::new(mesh, field, start.source())
+}
+
+/// The field after all passes, or the one step.
+fn by_scheme(
+    mesh: &Mesh,
+    field: Vec<DVec3>,
+    options: &DiffuseOptions<'_>,
+    cones: Option<&Cones<'_>>,
+    monitor: &dyn Monitor,
+) -> Result<Vec<DVec3>, GeometryError> {
+    let unit = options.lengths != Lengths::Diffuse;
+    let (weights, anisotropy) = (&options.weights, options.anisotropy.as_ref());
+    let rule = |iterations| passes::Rule {
+        iterations,
+        unit,
+        cones,
+    };
+    Ok(match options.scheme {
         Scheme::Mean {
             iterations,
             diffusion,
@@ -154,7 +207,7 @@ pub fn diffuse(
                 Laplacian::Cotangent => Stencil::cotangent(mesh),
             };
             let share = |vertex: usize| diffusion * weights.at(vertex);
-            passes::mean(field, &stencil, share, iterations, cones.as_ref(), monitor)?
+            passes::mean(field, &stencil, share, &rule(iterations), monitor)?
         }
         Scheme::EdgeSum {
             iterations,
@@ -163,22 +216,20 @@ pub fn diffuse(
         } => {
             let stencil = Stencil::edges(mesh, anisotropy)?;
             let share = |vertex: usize| step * weights.at(vertex);
-            let mut field = passes::edge_sum(field, &stencil, share, iterations, monitor)?;
+            let mut field = passes::edge_sum(field, &stencil, share, &rule(iterations), monitor)?;
             if flip_inverted {
                 side::flip(mesh, &mut field, monitor)?;
             }
             field
         }
-        Scheme::Implicit { distance } => implicit::solve(mesh, field, distance, weights, monitor)?,
-    };
-    let field = match (&cones, options.scheme) {
-        // `Mean` keeps the side in every pass.
-        (Some(cones), Scheme::EdgeSum { .. } | Scheme::Implicit { .. }) => {
-            cones.limit_all(field, monitor)?
+        Scheme::Implicit { distance } => {
+            let solved = implicit::solve(mesh, &field, distance, weights, monitor)?;
+            match unit {
+                true => implicit::to_unit(solved, &field),
+                false => solved,
+            }
         }
-        _ => field,
-    };
-    Directions::new(mesh, field, start.source())
+    })
 }
 
 /// `vector` at unit length, but left alone where it is one up to rounding, so

@@ -24,15 +24,29 @@ pub fn diverging_vertices(mesh: &Mesh) -> Vec<u32> {
         .collect()
 }
 
+/// What the passes have in common.
+pub(super) struct Rule<'a> {
+    pub(super) iterations: u32,
+    /// Whether directions are brought to unit length; else their lengths are
+    /// diffused with them.
+    pub(super) unit: bool,
+    /// What directions are kept within.
+    pub(super) cones: Option<&'a Cones<'a>>,
+}
+
 /// `iterations` times n <- normalize((1 - k) n + k mean), within the cones.
 pub(super) fn mean(
     mut field: Vec<DVec3>,
     stencil: &Stencil,
     share: impl Fn(usize) -> f64 + Sync,
-    iterations: u32,
-    cones: Option<&Cones<'_>>,
+    rule: &Rule<'_>,
     monitor: &dyn Monitor,
 ) -> Result<Vec<DVec3>, GeometryError> {
+    let &Rule {
+        iterations,
+        unit,
+        cones,
+    } = rule;
     if let (0, Some(cones)) = (iterations, cones) {
         return cones.limit_all(field, monitor);
     }
@@ -43,7 +57,13 @@ pub(super) fn mean(
             let k = share(vertex);
             let blend = match sum_of(stencil, vertex, &field) {
                 // Times the total weight, as only the sense of the blend counts.
-                Some((sum, total)) if k > 0.0 => unit_or(own * ((1.0 - k) * total) + sum * k, own),
+                Some((sum, total)) if k > 0.0 => {
+                    let blend = own * ((1.0 - k) * total) + sum * k;
+                    match unit {
+                        true => unit_or(blend, own),
+                        false => blend / total,
+                    }
+                }
                 _ => own,
             };
             *out = match cones {
@@ -98,7 +118,7 @@ const VANISHED: f64 = 1e-24;
 /// 1 + 2 · valence in each, below 2^33.
 const PASSES_PER_LOOK: u32 = 8;
 
-/// `iterations` times n <- n + k sum (n_j - n), then to unit length.
+/// `iterations` times n <- n + k sum (n_j - n), then to unit length if `unit`.
 ///
 /// Every step is linear, so where the field grows it may be multiplied by a
 /// power of two as a whole without changing a bit of the outcome: it never
@@ -107,9 +127,12 @@ pub(super) fn edge_sum(
     start: Vec<DVec3>,
     stencil: &Stencil,
     share: impl Fn(usize) -> f64 + Sync,
-    iterations: u32,
+    rule: &Rule<'_>,
     monitor: &dyn Monitor,
 ) -> Result<Vec<DVec3>, GeometryError> {
+    let &Rule {
+        iterations, unit, ..
+    } = rule;
     let mut field = start.clone();
     let mut next = vec![DVec3::ZERO; field.len()];
     for pass in 0..iterations {
@@ -129,10 +152,13 @@ pub(super) fn edge_sum(
             *out = own + sum * share(vertex);
         })?;
         std::mem::swap(&mut field, &mut next);
-        if pass % PASSES_PER_LOOK == 0 {
+        if unit && pass % PASSES_PER_LOOK == 0 {
             shrink(&mut field);
         }
         monitor.progress(u64::from(pass) + 1, u64::from(iterations));
+    }
+    if !unit {
+        return Ok(field);
     }
     for (vector, &start) in field.iter_mut().zip(&start) {
         let unit = unit_or_zero(*vector);

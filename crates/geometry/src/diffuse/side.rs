@@ -119,9 +119,19 @@ impl<'a> Cones<'a> {
         })
     }
 
-    /// The unit vector `wanted`, drawn towards the middle of the cone just far
-    /// enough to be in it. Where faces leave no cone it stays as it is.
+    /// `wanted`, drawn towards the middle of the cone just far enough to be in it,
+    /// as long as before. Where faces leave no cone it stays as it is.
     pub(super) fn limit(&self, vertex: usize, wanted: DVec3) -> DVec3 {
+        let length = wanted.length();
+        // Unit vectors are taken as they are, so that no pass changes them.
+        if (length - 1.0).abs() <= 1e-12 {
+            self.limit_unit(vertex, wanted)
+        } else {
+            self.limit_unit(vertex, unit_or_zero(wanted)) * length
+        }
+    }
+
+    fn limit_unit(&self, vertex: usize, wanted: DVec3) -> DVec3 {
         let (middle, least) = self.middles[vertex];
         if middle == DVec3::ZERO || wanted == DVec3::ZERO {
             return wanted;

@@ -1,3 +1,5 @@
+mod lengths;
+
 use std::sync::Arc;
 
 use glam::{DMat3, DQuat, DVec2, DVec3};

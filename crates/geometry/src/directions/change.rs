@@ -65,21 +65,30 @@ pub fn blend_directions(
 }
 
 /// Directions with x, y and z multiplied by `factors`: z = 0 levels them, the
-/// others 0 set them upright. At unit length again if `unit`. Cost: O(vertices).
+/// others 0 set them upright. At unit length again if `unit`.
+///
+/// Each vertex takes part by its `amount`, one for all or one per vertex: it is
+/// multiplied by 1 + amount (factor - 1), so 0 leaves it as it is. Cost:
+/// O(vertices).
 ///
 /// # Errors
 /// [`GeometryError::OtherTopology`], [`GeometryError::Compensated`],
-/// [`GeometryError::NonFiniteValue`]; [`GeometryError::ZeroDirection`] names
+/// [`GeometryError::NonFiniteValue`]; those of [`Amount::check`]; [`GeometryError::ZeroDirection`] names
 /// vertices of faces with nothing left; [`GeometryError::Cancelled`].
 pub fn scale_directions(
     mesh: &Mesh,
     directions: &Directions,
     factors: DVec3,
+    amount: &Amount,
     unit: bool,
     monitor: &dyn Monitor,
 ) -> Result<Directions, GeometryError> {
     check_plain(mesh, directions, "ScaleDirections")?;
+    amount.check(mesh, Domain::Vertex)?;
     let vectors = parallel::map(mesh.vertex_count(), monitor, |vertex| {
+        let share = amount.at(vertex);
+        // Exactly the factors at 1, exactly the direction at 0.
+        let factors = DVec3::splat(1.0 - share) + factors * share;
         let scaled = directions.outward()[vertex] * factors;
         if unit && scaled.is_finite() {
             unit_or_zero(scaled)
@@ -165,14 +174,33 @@ mod tests {
         let mesh = quad();
         let lean = directions(&mesh, vec![DVec3::new(0.6, 0.0, 0.8); 4]);
         let level = DVec3::new(1.0, 1.0, 0.0);
-        let scale = |unit| scale_directions(&mesh, &lean, level, unit, &Unmonitored).unwrap();
+        let all = Amount::Constant(1.0);
+        let scale = |unit| scale_directions(&mesh, &lean, level, &all, unit, &Unmonitored).unwrap();
         assert_eq!(scale(false).outward()[2], DVec3::new(0.6, 0.0, 0.0));
         assert_eq!(scale(true).outward()[2], DVec3::X);
-        let nothing = scale_directions(&mesh, &lean, DVec3::Y, true, &Unmonitored);
+        let nothing = scale_directions(&mesh, &lean, DVec3::Y, &all, true, &Unmonitored);
         assert!(matches!(nothing, Err(GeometryError::ZeroDirection { .. })));
         let vectors = || lean.outward().to_vec();
         let compensated = lean.compensated(vectors(), vectors()).unwrap();
-        let refused = scale_directions(&mesh, &compensated, level, true, &Unmonitored);
+        let refused = scale_directions(&mesh, &compensated, level, &all, true, &Unmonitored);
         assert!(matches!(refused, Err(GeometryError::Compensated { .. })));
+    }
+
+    #[test]
+    fn a_field_says_how_much_each_vertex_is_scaled() {
+        let mesh = quad();
+        let lean = directions(&mesh, vec![DVec3::new(0.6, 0.0, 0.8); 4]);
+        let shares = Field::new(Domain::Vertex, Quantity::Number, vec![0.0, 0.25, 0.5, 1.0]);
+        let shares = Amount::Field(Arc::new(shares.unwrap()));
+        let level = DVec3::new(1.0, 1.0, 0.0);
+        let scaled = scale_directions(&mesh, &lean, level, &shares, false, &Unmonitored).unwrap();
+        let heights: Vec<f64> = scaled.outward().iter().map(|vector| vector.z).collect();
+        for (z, expected) in heights.iter().zip([0.8, 0.6, 0.4, 0.0]) {
+            assert!((z - expected).abs() < 1e-15, "{heights:?}");
+        }
+        let faces = Field::new(Domain::Face, Quantity::Number, vec![1.0]).unwrap();
+        let faces = Amount::Field(Arc::new(faces));
+        let refused = scale_directions(&mesh, &lean, level, &faces, true, &Unmonitored);
+        assert!(matches!(refused, Err(GeometryError::FieldDomain { .. })));
     }
 }

@@ -25,7 +25,9 @@ pub use fan::fan_faces;
 pub use flip::flip_chosen_faces;
 pub use frame::{Fill, FrameOptions, FramePart, Framed, Inset, frame_faces};
 pub use pieces::SOURCE_FACE;
-pub use rotate::{Along, rotate_faces, turns_along_gradient, turns_by_uv, turns_random};
+pub use rotate::{
+    Along, rotate_faces, turns_along_gradient, turns_by_uv, turns_random, turns_random_as,
+};
 pub use select::{cells, delete_faces, faces_within};
 pub use split::{PieceOrder, Split, split_into_quads, triangulate_faces};
 

@@ -57,12 +57,18 @@ pub fn rotate_faces(mesh: &Mesh, turns: &[i64]) -> Result<Mesh, GeometryError> {
 /// They depend on the seed and the face's number alone (SplitMix64, Steele et
 /// al. 2014), not on the other faces, the platform or the number of threads.
 pub fn turns_random(mesh: &Mesh, seed: u64) -> Vec<i64> {
-    (0..mesh.face_count())
-        .map(|face| {
-            let count = mesh.face(face).len() as f64;
-            (uniform(seed, face as i64) * count).floor() as i64
-        })
-        .collect()
+    let own: Vec<usize> = (0..mesh.face_count()).collect();
+    turns_random_as(mesh, &own, seed)
+}
+
+/// As [`turns_random`] with the number drawn for face `drawn[face]`, one per face:
+/// equal ones turn alike.
+pub fn turns_random_as(mesh: &Mesh, drawn: &[usize], seed: u64) -> Vec<i64> {
+    let turns = |(face, &drawn): (usize, &usize)| {
+        let count = mesh.face(face).len() as f64;
+        (uniform(seed, drawn as i64) * count).floor() as i64
+    };
+    drawn.iter().enumerate().map(turns).collect()
 }
 
 /// Turns that make each component's u direction run as nearly as a corner

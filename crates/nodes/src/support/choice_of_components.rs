@@ -1,18 +1,35 @@
 //! Which of several components goes where: the inputs of `ArrayComponents`
 //! turned into one component index and one turn per cell.
 
+use std::collections::BTreeMap;
+
+use tessgraph_geometry::domains::SOURCE_FACE;
 use tessgraph_geometry::subdivide::Parents;
 use tessgraph_geometry::{
-    Amount, AttributeValues, Domain, Field, Mesh, NO_COMPONENT, PANEL, Quantity, border_faces,
-    border_patch_turns, border_patches, border_turns, choose_along, choose_by_index,
-    choose_by_material, choose_random,
+    Amount, AttributeValues, Domain, Field, Mesh, NO_COMPONENT, PANEL, Quantity,
+    border_edge_counts, border_patch_turns, border_side_counts, border_turns, choose_along,
+    choose_by_index, choose_by_material, choose_random,
 };
 use tessgraph_graph::NodeError;
+use tessgraph_macros::Choice;
 
 /// The places that take a component each: faces, or patches of a subdivided base.
 pub(crate) struct Cells<'a> {
     pub(crate) base: &'a Mesh,
     pub(crate) parents: Option<&'a Parents>,
+    /// For each cell the first one of those that choose alike, if not each for
+    /// itself.
+    pub(crate) alike: Option<&'a [usize]>,
+}
+
+/// What a choice is made for.
+#[derive(Clone, Copy, PartialEq, Eq, Choice)]
+pub(crate) enum Per {
+    /// Each face for itself.
+    Face,
+    /// All faces made of one face alike, as the first of them: the triangles of a fan,
+    /// the quads of a frame.
+    Source,
 }
 
 /// How components are chosen, with all it takes.
@@ -34,6 +51,12 @@ pub(crate) enum Chooser<'a> {
 impl Cells<'_> {
     fn count(&self) -> usize {
         self.parents.map_or(self.base.face_count(), Parents::len)
+    }
+
+    /// The face a cell's choice is read from: itself, or a patch's first, or that of
+    /// the first of those that choose alike.
+    fn chooser(&self, cell: usize) -> usize {
+        self.face(self.alike.map_or(cell, |first| first[cell]))
     }
 
     /// The face a cell's values are read from: itself, or a patch's first.
@@ -64,7 +87,7 @@ impl Cells<'_> {
                 }
                 let of_face = choose_by_material(self.base, names);
                 Ok((0..self.count())
-                    .map(|cell| of_face[self.face(cell)])
+                    .map(|cell| of_face[self.chooser(cell)])
                     .collect())
             }
             Chooser::Random { weights, seed } => {
@@ -91,21 +114,21 @@ impl Cells<'_> {
         }
     }
 
-    /// Gives cells at the border another component; the turns that bring the
-    /// border to their side v = 0.
-    pub(crate) fn take_border(&self, choice: &mut [u32], component: u32) -> Vec<u8> {
-        let (border, mut turns) = match self.parents {
-            Some(parents) => (border_patches(parents), border_patch_turns(parents)),
+    /// Gives cells at the border other components, from `first` on one for each
+    /// number of border edges, the last of `count` for all beyond; the turns that
+    /// bring the border to their side v = 0.
+    pub(crate) fn take_border(&self, choice: &mut [u32], first: u32, count: u32) -> Vec<u8> {
+        let (edges, mut turns) = match self.parents {
+            Some(parents) => (border_side_counts(parents), border_patch_turns(parents)),
             None => {
                 let topology = self.base.topology();
-                (border_faces(topology), border_turns(topology))
+                (border_edge_counts(topology), border_turns(topology))
             }
         };
-        for ((choice, at_border), turns) in choice.iter_mut().zip(border).zip(&mut turns) {
-            if at_border {
-                *choice = component;
-            } else {
-                *turns = 0;
+        for ((choice, edges), turns) in choice.iter_mut().zip(edges).zip(&mut turns) {
+            match edges {
+                0 => *turns = 0,
+                edges => *choice = first + edges.min(count) - 1,
             }
         }
         turns
@@ -125,7 +148,7 @@ impl Cells<'_> {
     /// A field of faces as one value per cell.
     fn values(&self, field: &Field, input: &'static str) -> Result<Field, NodeError> {
         field.check(self.base, Domain::Face).map_err(at(input))?;
-        let values = (0..self.count()).map(|cell| field.values()[self.face(cell)]);
+        let values = (0..self.count()).map(|cell| field.values()[self.chooser(cell)]);
         Field::new(Domain::Face, Quantity::Number, values.collect()).map_err(at(input))
     }
 
@@ -133,11 +156,31 @@ impl Cells<'_> {
     fn ids(&self) -> Vec<i64> {
         let panels = self.base.attribute(PANEL, Domain::Face).map(|a| a.values());
         let id = |cell: usize| match panels {
-            Some(AttributeValues::Integer(ids)) => ids[self.face(cell)],
-            _ => cell as i64,
+            Some(AttributeValues::Integer(ids)) => ids[self.chooser(cell)],
+            _ => self.alike.map_or(cell, |first| first[cell]) as i64,
         };
         (0..self.count()).map(id).collect()
     }
+}
+
+/// For each face the first one that was made of the same face, by the attribute
+/// that `FanFaces` and others leave.
+///
+/// # Errors
+/// A mesh without that attribute.
+pub(crate) fn first_of_source(mesh: &Mesh, input: &'static str) -> Result<Vec<usize>, NodeError> {
+    let sources = mesh
+        .attribute(SOURCE_FACE, Domain::Face)
+        .map(|a| a.values());
+    let Some(AttributeValues::Integer(sources)) = sources else {
+        let message = format!("the faces have no `{SOURCE_FACE}` that says what they were made of");
+        return Err(NodeError::new(message)
+            .with_help("`FanFaces`, `FrameFaces`, `TriangulateFaces` and `SplitIntoQuads` leave it")
+            .at_input(input));
+    };
+    let mut first = BTreeMap::new();
+    let of_face = |(face, source): (usize, &i64)| *first.entry(*source).or_insert(face);
+    Ok(sources.iter().enumerate().map(of_face).collect())
 }
 
 fn at(input: &'static str) -> impl Fn(tessgraph_geometry::GeometryError) -> NodeError {
