@@ -61,7 +61,7 @@ pub use fit::{
 pub use glam;
 pub use join::join;
 pub use mesh::{
-    Attribute, AttributeValues, Domain, Labels, Material, Mesh, NO_LABEL, Triangles,
+    Attribute, AttributeValues, Domain, Labels, Material, Mesh, NO_LABEL, SEAM, Triangles,
 };
 pub use monitor::{Monitor, Unmonitored};
 pub use naming::faces_named;

@@ -6,7 +6,6 @@ use glam::{DAffine3, DMat3, DVec3};
 
 use crate::math::{cos, sin, unit_or_zero};
 use crate::mesh::{Attribute, AttributeValues, Domain};
-use crate::subdivide::CREASE;
 use crate::{GeometryError, Mesh, Topology};
 
 /// Attribute that holds unit normals, on vertices, faces or corners.
@@ -130,8 +129,8 @@ pub fn transform(mesh: &Mesh, world_from_local: DAffine3) -> Result<Mesh, Geomet
 /// The mesh with every face turned round: p0 p1 p2 p3 becomes p0 p3 p2 p1.
 ///
 /// Corner 0 stays the corner (0, 0) of its face; u and v change places. Corner
-/// attributes go with their corners, the edge attribute [`CREASE`] with its
-/// edges. Attributes named [`NORMAL`] are left alone: they belong to the
+/// attributes go with their corners, the edge attributes
+/// [`CREASE`](crate::subdivide::CREASE) and [`SEAM`](crate::SEAM) with their edges. Attributes named [`NORMAL`] are left alone: they belong to the
 /// surface, and whoever flips it decides. Cost: O(corners).
 ///
 /// # Errors
@@ -157,9 +156,9 @@ pub fn flip_faces(mesh: &Mesh) -> Result<Mesh, GeometryError> {
         topology.offsets().to_vec(),
         corners.collect(),
     )?;
-    let gather = |attribute: &Attribute| match (attribute.domain(), attribute.name()) {
-        (Domain::Corner, CREASE) => attribute.values().gather(&from_edge),
-        (Domain::Corner, _) => attribute.values().gather(&from_corner),
+    let gather = |attribute: &Attribute| match attribute.domain() {
+        Domain::Corner if attribute.is_on_edges() => attribute.values().gather(&from_edge),
+        Domain::Corner => attribute.values().gather(&from_corner),
         _ => attribute.values().clone(),
     };
     let flipped = Mesh::new(mesh.positions().to_vec(), Arc::new(turned))?
@@ -183,6 +182,7 @@ mod tests {
     use crate::measure::measure_mesh;
     use crate::normals::face_normals;
     use crate::primitives::cuboid;
+    use crate::subdivide::CREASE;
     use crate::subdivide::{Options, subdivide};
 
     fn brick() -> Mesh {

@@ -12,7 +12,9 @@ use tessgraph_macros::{Choice, Inputs};
 /// x and y become u and v, z becomes the height above the surface. `height` sets
 /// the component's depth, `anchor` which level of it lies in the surface. What
 /// reaches beyond the square stays, is cut off, or comes in again at the other
-/// side, per axis. Use the result with `ArrayComponents(fit: Unit)`.
+/// side, per axis; the edges of cuts have 1 in the edge attribute `seam`, by which
+/// `DissolveEdges` heals them in the array. Use the result with
+/// `ArrayComponents(fit: Unit)`.
 ///
 /// ```ron
 /// Graph(version: 1, nodes: {
@@ -99,6 +101,7 @@ pub(crate) enum BeyondChoice {
 
 impl Node for FitComponent {
     type Output = Arc<Mesh>;
+    const VERSION: u32 = 2;
 
     fn eval(self, cx: &EvalCx<'_>) -> Result<Self::Output, NodeError> {
         let at =

@@ -4,6 +4,7 @@
 //! struct's doc comment, and a call into `geometry` or `io`. Adding one takes a
 //! file and two lines here.
 
+mod area_field;
 mod array_components;
 mod attribute_field;
 mod blend_directions;
@@ -19,6 +20,7 @@ mod curvature_field;
 mod delete_faces;
 mod directions_from_attribute;
 mod displace_vertices;
+mod dissolve_edges;
 mod distance_field;
 mod dual_mesh;
 mod evaluate_field;
@@ -46,6 +48,7 @@ mod require;
 mod rotate_faces;
 mod scale_directions;
 mod select_faces;
+mod separate_faces;
 mod set_attribute;
 mod smooth_normals;
 mod split_into_quads;
@@ -83,7 +86,9 @@ pub static NODES: &[NodeSpec] = &[
     NodeSpec::of::<select_faces::SelectFaces>(),
     NodeSpec::of::<delete_faces::DeleteFaces>(),
     NodeSpec::of::<extrude_faces::ExtrudeFaces>(),
+    NodeSpec::of::<separate_faces::SeparateFaces>(),
     NodeSpec::of::<weld_vertices::WeldVertices>(),
+    NodeSpec::of::<dissolve_edges::DissolveEdges>(),
     NodeSpec::of::<cap_holes::CapHoles>(),
     NodeSpec::of::<bridge_loops::BridgeLoops>(),
     // Fields and attributes
@@ -93,6 +98,7 @@ pub static NODES: &[NodeSpec] = &[
     NodeSpec::of::<image_field::ImageField>(),
     NodeSpec::of::<distance_field::DistanceField>(),
     NodeSpec::of::<curvature_field::CurvatureField>(),
+    NodeSpec::of::<area_field::AreaField>(),
     NodeSpec::of::<random_field::RandomField>(),
     NodeSpec::of::<max_offset::MaxOffset>(),
     NodeSpec::of::<set_attribute::SetAttribute>(),

@@ -5,7 +5,8 @@ use glam::{DVec2, DVec3};
 use super::basis::{Basis, BasisPoint};
 use super::layout::Layout;
 use super::{ArrayOptions, Interpolation, Piece, is_relative};
-use crate::normals::{NormalWeights, face_area_vectors, vertex_normals};
+use crate::fields::vertex_means;
+use crate::normals::{NormalWeights, vertex_normals};
 use crate::{Amount, Directions, Domain, GeometryError, Mesh, Monitor, math, parallel};
 
 /// A point of the array about to be displaced.
@@ -309,15 +310,7 @@ fn make_bases(
 
 /// sqrt(A) per vertex, A the mean area of the faces round it; 0 without faces.
 fn vertex_sizes(base: &Mesh, monitor: &dyn Monitor) -> Result<Vec<f64>, GeometryError> {
-    let areas = face_area_vectors(base, monitor)?;
-    let adjacency = base.topology().adjacency();
-    parallel::map(base.vertex_count(), monitor, |vertex| {
-        let corners = adjacency.vertex_corners(vertex);
-        let area = |&corner: &u32| {
-            // Newell's vector is twice the area long.
-            areas[adjacency.corner_faces()[corner as usize] as usize].length() / 2.0
-        };
-        let sum: f64 = corners.iter().map(area).sum();
-        (sum / corners.len().max(1) as f64).sqrt()
-    })
+    let mut sizes = vertex_means(base, monitor)?;
+    sizes.iter_mut().for_each(|size| *size = size.sqrt());
+    Ok(sizes)
 }

@@ -3,6 +3,7 @@
 mod bridge;
 mod cap;
 mod closing;
+mod dissolve;
 mod dual;
 mod extrude;
 mod fan;
@@ -13,12 +14,14 @@ mod pieces;
 mod push;
 mod rotate;
 mod select;
+mod separate;
 mod split;
 #[cfg(test)]
 mod tests;
 
 pub use bridge::{BridgeOptions, Bridged, LoopPairs, bridge_loops};
 pub use cap::{Cap, CapOptions, Capped, cap_holes};
+pub use dissolve::{Dissolved, dissolve_edges, edges_by_attribute, edges_within_angle};
 pub use dual::{Dual, DualBorder, SOURCE_VERTEX, dual};
 pub use extrude::{ExtrudeMode, ExtrudeOptions, ExtrudePart, extrude_faces};
 pub use fan::fan_faces;
@@ -29,6 +32,7 @@ pub use rotate::{
     Along, rotate_faces, turns_along_gradient, turns_by_uv, turns_random, turns_random_as,
 };
 pub use select::{cells, delete_faces, faces_within};
+pub use separate::separate_faces;
 pub use split::{PieceOrder, Split, split_into_quads, triangulate_faces};
 
 use crate::{Amount, Domain, GeometryError, Mesh};

@@ -4,10 +4,8 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use crate::buffer::Buffer;
 use crate::mesh::{Attribute, AttributeValues};
 use crate::rebuild::with_labels;
-use crate::subdivide::CREASE;
 use crate::{Domain, GeometryError, Mesh, Topology};
 
 /// Face attribute that names the face of the input a face was made of.
@@ -165,16 +163,18 @@ impl<'a> Pieces<'a> {
         // Old vertices, then the new ones by their blends.
         let vertices: Vec<u32> = (0..out.vertex_count() as u32).collect();
         for attribute in self.mesh.attributes() {
-            let values = match (attribute.domain(), attribute.name()) {
-                (Domain::Face, _) => attribute.values().gather(&self.faces),
-                (Domain::Corner, CREASE) => on_edges(attribute.values(), &self.edges),
-                (Domain::Corner, _) => blended(
+            let values = match attribute.domain() {
+                Domain::Face => attribute.values().gather(&self.faces),
+                Domain::Corner if attribute.is_on_edges() => {
+                    attribute.values().gather_or_zero(&self.edges)
+                }
+                Domain::Corner => blended(
                     attribute.values(),
                     self.mesh.corner_count(),
                     &self.corner_values,
                     &self.corner_blends,
                 ),
-                (Domain::Vertex, _) => blended(
+                Domain::Vertex => blended(
                     attribute.values(),
                     self.mesh.vertex_count(),
                     &vertices,
@@ -209,23 +209,4 @@ fn blended(
         Some(blend) => blends.row(blend),
     };
     values.combine(rows.iter().map(row))
-}
-
-/// The values of the corners whose edges are kept, and zeros for new edges.
-fn on_edges(values: &AttributeValues, edges: &[u32]) -> AttributeValues {
-    fn pick<T: Copy + Default>(values: &[T], edges: &[u32]) -> Buffer<T> {
-        edges
-            .iter()
-            .map(|&edge| match edge {
-                NEW_EDGE => T::default(),
-                edge => values[edge as usize],
-            })
-            .collect()
-    }
-    match values {
-        AttributeValues::Integer(values) => AttributeValues::Integer(pick(values, edges)),
-        AttributeValues::Number(values) => AttributeValues::Number(pick(values, edges)),
-        AttributeValues::Vector2(values) => AttributeValues::Vector2(pick(values, edges)),
-        AttributeValues::Vector3(values) => AttributeValues::Vector3(pick(values, edges)),
-    }
 }

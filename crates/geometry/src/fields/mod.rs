@@ -1,10 +1,13 @@
-//! Fields computed from a mesh: random, by distance, by curvature.
+//! Fields computed from a mesh: random, by size, by distance, by curvature.
 
+mod area;
 mod curvature;
 mod distance;
 mod jet;
 mod max_offset;
 
+pub(crate) use area::vertex_means;
+pub use area::{face_areas, mean_face_areas};
 pub use curvature::{Curvature, curvature};
 pub use distance::{distances_to_points, distances_to_surface, places};
 pub use max_offset::{MaxOffset, max_offset};

@@ -4,7 +4,8 @@ use std::collections::HashMap;
 
 use glam::{DVec2, DVec3};
 
-use super::Beyond;
+use super::{Beyond, seams};
+use crate::mesh::SEAM;
 use crate::normals_uv::NORMAL_UV;
 use crate::rebuild::with_labels;
 use crate::{Attribute, AttributeValues, Domain, GeometryError, Mesh, Topology};
@@ -74,16 +75,25 @@ fn check_periods(mesh: &Mesh, beyond: [Beyond; 2]) -> Result<(), GeometryError> 
     Ok(())
 }
 
-/// A corner of a polygon being cut: ids of its vertex and its corner recipe.
+/// A corner of a polygon being cut: ids of its vertex and its corner recipe, and
+/// the component's corner whose edge leaves it, or [`CUT`].
 #[derive(Clone, Copy)]
 struct Node {
     vertex: u32,
     corner: u32,
+    edge: u32,
 }
+
+/// Marks an edge that a cut made.
+pub(super) const CUT: u32 = u32::MAX;
 
 impl Node {
     fn of((corner, &vertex): (u32, &u32)) -> Self {
-        Self { vertex, corner }
+        Self {
+            vertex,
+            corner,
+            edge: corner,
+        }
     }
 }
 
@@ -240,7 +250,16 @@ impl Cutter {
                 above.push(cut);
             }
         }
-        let polygon = |nodes: Vec<Node>| (nodes.len() >= 3).then_some(nodes);
+        let polygon = |mut nodes: Vec<Node>| {
+            let lies_in = |node: Node| (self.at(node, axis) - level).abs() <= 0.0;
+            // A part has an edge in the line only where it was cut.
+            for k in 0..nodes.len() {
+                if lies_in(nodes[k]) && lies_in(nodes[(k + 1) % nodes.len()]) {
+                    nodes[k].edge = CUT;
+                }
+            }
+            (nodes.len() >= 3).then_some(nodes)
+        };
         (polygon(below), polygon(above))
     }
 
@@ -254,9 +273,13 @@ impl Cutter {
         let (low, high) = (self.at(a, axis), self.at(b, axis));
         let t = (line as f64 - low) / (high - low);
         let corner = self.corners.mix(a.corner, b.corner, t);
-        let key = (a.vertex, b.vertex, axis, line);
+        let (key, edge) = ((a.vertex, b.vertex, axis, line), from.edge);
         if let Some(&vertex) = self.made.get(&key) {
-            return Node { vertex, corner };
+            return Node {
+                vertex,
+                corner,
+                edge,
+            };
         }
         let (start, end) = (
             self.positions[a.vertex as usize],
@@ -267,7 +290,11 @@ impl Cutter {
         self.positions.push(position);
         let vertex = self.vertices.mix(a.vertex, b.vertex, t);
         self.made.insert(key, vertex);
-        Node { vertex, corner }
+        Node {
+            vertex,
+            corner,
+            edge,
+        }
     }
 }
 
@@ -304,9 +331,12 @@ fn assemble(mesh: &Mesh, cutter: &Cutter, pieces: &[Piece]) -> Result<Mesh, Geom
     let topology = Topology::new(vertices.len(), offsets, corners)?;
     let faces: Vec<u32> = pieces.iter().map(|piece| piece.face).collect();
     let mut out = with_labels(mesh, Mesh::new(positions, topology.into())?, Some(&faces))?;
+    let nodes = || pieces.iter().flat_map(|piece| &piece.polygon);
+    let edges: Vec<u32> = nodes().map(|node| node.edge).collect();
     for attribute in mesh.attributes() {
         let values = match attribute.domain() {
             Domain::Face => attribute.values().gather(&faces),
+            Domain::Corner if attribute.is_on_edges() => attribute.values().gather_or_zero(&edges),
             Domain::Corner => mixed(attribute, &cutter.corners, corner_rows.iter().copied()),
             Domain::Vertex => {
                 let ids = vertices.iter().map(|&(vertex, _)| vertex);
@@ -317,7 +347,8 @@ fn assemble(mesh: &Mesh, cutter: &Cutter, pieces: &[Piece]) -> Result<Mesh, Geom
         };
         out = out.with_attribute(attribute.with_values(values))?;
     }
-    Ok(out)
+    let seams = seams::seams(mesh, &edges);
+    out.with_attribute(Attribute::new(SEAM, Domain::Corner, seams))
 }
 
 fn mixed(

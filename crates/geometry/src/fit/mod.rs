@@ -2,6 +2,7 @@
 
 mod cut;
 mod outliers;
+mod seams;
 #[cfg(test)]
 mod tests;
 

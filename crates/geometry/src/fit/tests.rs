@@ -174,6 +174,51 @@ fn cuts_interpolate_attributes_and_faces_keep_labels() {
 }
 
 #[test]
+fn edges_of_cuts_are_seams() {
+    // Quads of 0.6 by 0.6 from (-0.4, -0.3) on, with creases along y.
+    let sheet = grid(3, 3, |x, y| [x * 0.6 - 0.4, y * 0.6 - 0.3, 0.0]);
+    let ends = |corner: u32| {
+        let corners = [
+            corner,
+            crate::topology::next_in_face(sheet.topology(), corner),
+        ];
+        corners
+            .map(|corner| sheet.positions()[sheet.topology().corners()[corner as usize] as usize])
+    };
+    let creases = (0..sheet.corner_count() as u32).map(|corner| {
+        let [a, b] = ends(corner);
+        if (a.x - b.x).abs() < 1e-9 { 3.0 } else { 0.0 }
+    });
+    let creases = AttributeValues::Number(creases.collect());
+    let sheet = sheet
+        .clone()
+        .with_attribute(Attribute::new(
+            crate::subdivide::CREASE,
+            Domain::Corner,
+            creases,
+        ))
+        .unwrap();
+    for beyond in [Beyond::Clip, Beyond::Cyclic] {
+        let cut = clip(&sheet, beyond, beyond);
+        let values = |name: &str| match cut.attribute(name, Domain::Corner).map(Attribute::values) {
+            Some(AttributeValues::Number(values)) => values.to_vec(),
+            other => panic!("{name}: {other:?}"),
+        };
+        let (seams, creases) = (values(crate::SEAM), values(crate::subdivide::CREASE));
+        for corner in 0..cut.corner_count() as u32 {
+            let next = crate::topology::next_in_face(cut.topology(), corner);
+            let [a, b] = [corner, next]
+                .map(|c| cut.positions()[cut.topology().corners()[c as usize] as usize]);
+            let on_side = |k: usize| [0.0, 1.0].iter().any(|&at| a[k] == at && b[k] == at);
+            let seam = on_side(0) || on_side(1);
+            assert_eq!(seams[corner as usize] > 0.5, seam, "{beyond:?} {a} {b}");
+            let crease = !seam && (a.x - b.x).abs() < 1e-9;
+            assert_eq!(creases[corner as usize] > 1.0, crease, "{beyond:?} {a} {b}");
+        }
+    }
+}
+
+#[test]
 fn a_hair_beyond_the_square_is_put_on_its_side() {
     let sheet = grid(1, 1, |x, y| [x * (1.0 + 1e-12), y, 0.0]);
     let clipped = clip(&sheet, Beyond::Clip, Beyond::Extend);

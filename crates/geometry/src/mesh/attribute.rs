@@ -7,6 +7,10 @@ use super::Domain;
 use crate::GeometryError;
 use crate::buffer::Buffer;
 use crate::digest::{Digest, Hasher};
+use crate::subdivide::CREASE;
+
+/// Edge attribute that is 1 on the edges at which a component was cut.
+pub const SEAM: &str = "seam";
 
 /// The values of an attribute, one per element of its domain.
 #[derive(Debug, Clone, PartialEq)]
@@ -44,6 +48,23 @@ impl AttributeValues {
             Self::Number(_) => "number",
             Self::Vector2(_) => "2D vector",
             Self::Vector3(_) => "3D vector",
+        }
+    }
+
+    /// The values at `indices`, in that order, and 0 for [`u32::MAX`].
+    pub(crate) fn gather_or_zero(&self, indices: &[u32]) -> Self {
+        fn pick<T: Copy + Default>(values: &[T], indices: &[u32]) -> Buffer<T> {
+            let value = |&index: &u32| match index {
+                u32::MAX => T::default(),
+                index => values[index as usize],
+            };
+            indices.iter().map(value).collect()
+        }
+        match self {
+            Self::Integer(values) => Self::Integer(pick(values, indices)),
+            Self::Number(values) => Self::Number(pick(values, indices)),
+            Self::Vector2(values) => Self::Vector2(pick(values, indices)),
+            Self::Vector3(values) => Self::Vector3(pick(values, indices)),
         }
     }
 
@@ -175,6 +196,12 @@ impl Attribute {
             domain: self.domain,
             values,
         }
+    }
+
+    /// Whether its values belong to the edges that leave the corners, not to the
+    /// corners: creases and seams.
+    pub(crate) fn is_on_edges(&self) -> bool {
+        self.domain == Domain::Corner && [CREASE, SEAM].contains(&self.name())
     }
 
     pub(super) fn check(&self, expected: usize) -> Result<(), GeometryError> {

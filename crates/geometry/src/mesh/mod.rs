@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-pub use attribute::{Attribute, AttributeValues};
+pub use attribute::{Attribute, AttributeValues, SEAM};
 pub use labels::{Labels, Material, NO_LABEL};
 pub use triangles::Triangles;
 

@@ -7,6 +7,7 @@ use super::Scheme;
 use super::faces::Blocks;
 use super::refiner::Refiner;
 use super::sharpness::{CORNER_SHARPNESS, CREASE, decayed_attribute};
+use crate::mesh::SEAM;
 
 /// Gives `fine` everything `coarse` carries: vertex attributes by the masks of
 /// positions, corner attributes bilinear, face attributes and labels from the
@@ -32,7 +33,12 @@ pub(super) fn inherit(
             (Domain::Face, _) => attribute.values().gather(&parents),
             (Domain::Vertex, CORNER_SHARPNESS) => left_at_vertices(attribute, refiner, &fine),
             (Domain::Vertex, _) => at_vertices(attribute.values(), refiner, monitor)?,
-            (Domain::Corner, CREASE) => left_on_edges(attribute, refiner, blocks, monitor)?,
+            (Domain::Corner, CREASE) => {
+                let level = consumed_levels(refiner);
+                left_on_edges(attribute, level, blocks, monitor)?
+            }
+            // Nothing uses a seam up.
+            (Domain::Corner, SEAM) => left_on_edges(attribute, 0, blocks, monitor)?,
             (Domain::Corner, _) => blocks.corner_values(attribute.values(), monitor)?,
         };
         fine = fine.with_attribute(attribute.with_values(values))?;
@@ -82,11 +88,10 @@ pub(super) fn at_vertices(
 /// number is no sharpness.
 fn left_on_edges(
     attribute: &Attribute,
-    refiner: &Refiner,
+    level: u32,
     blocks: &Blocks<'_>,
     monitor: &dyn Monitor,
 ) -> Result<AttributeValues, GeometryError> {
-    let level = consumed_levels(refiner);
     let left = match attribute.values() {
         AttributeValues::Number(values) => {
             blocks.edge_sharpness(&|corner| values[corner], level, monitor)?
