@@ -83,10 +83,17 @@ impl Case {
         let has = |name: &str| self.folder.join(name).is_file();
         Holds {
             weights: has("weights.csv"),
+            target: has("target.obj") && self.counts("target.obj") == self.counts("base.obj"),
             selection: has("selection.csv"),
             base_materials: self.materials("base.obj"),
             component_materials: self.materials("component.obj"),
         }
+    }
+
+    /// Vertices and faces of a mesh.
+    fn counts(&self, name: &str) -> [usize; 2] {
+        let text = support::text_of(&self.folder.join(name));
+        ["v ", "f "].map(|mark| text.lines().filter(|line| line.starts_with(mark)).count())
     }
 
     /// The materials of a mesh in the order of their first faces.

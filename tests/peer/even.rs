@@ -9,7 +9,7 @@ use crate::support::{Ran, height_errors};
 /// Beaten if every vertex of ours has a solution and both sides keep their
 /// thickness better, measured with borders continued.
 pub(super) fn judge(ran: &Ran, theirs: &Mesh) -> Verdict {
-    let unsolved = ran.number("arrayed.unsolved");
+    let unsolved = ran.number("apart.unsolved");
     if unsolved > 0.0 {
         return Verdict::Differs(format!("{unsolved} vertices have no solution"));
     }

@@ -17,7 +17,7 @@ fn of(settings: &str, files: &[(&str, &str)]) -> Verdict {
 }
 
 /// An OBJ file of places and of faces by vertices counted from 0.
-fn obj(places: &[[f64; 3]], faces: &[Vec<usize>]) -> String {
+pub(super) fn obj(places: &[[f64; 3]], faces: &[Vec<usize>]) -> String {
     let vertex = |[x, y, z]: &[f64; 3]| format!("v {x:?} {y:?} {z:?}\n");
     let corners = |face: &Vec<usize>| -> String {
         let corners = face.iter().map(|vertex| format!(" {}", vertex + 1));
@@ -264,4 +264,70 @@ fn loops_of_a_group_are_closed() {
     let both = "\"close_mesh\": \"BRIDGE_CAP\", \"vertex_group_bridge\": \"W\"";
     let verdict = judge(both, [1, 1, 0], &[&walls[..], &[cap(8)]].concat());
     assert!(matches!(verdict, Verdict::Reproduced), "{verdict}");
+}
+
+/// Quads in a row, from one place along x to the next, of width 1.
+fn row(places: &[f64]) -> String {
+    let count = places.len();
+    let at = |y: f64| places.iter().map(move |&x| [x, y, 0.0]);
+    let faces: Vec<Vec<usize>> = (0..count - 1)
+        .map(|k| vec![k, k + 1, k + 1 + count, k + count])
+        .collect();
+    obj(&at(0.0).chain(at(1.0)).collect::<Vec<_>>(), &faces)
+}
+
+#[test]
+fn patterns_that_were_cut_are_whole_again() {
+    // A tile from the middle of each cell to the middle of the next.
+    let (base, tile) = (row(&[0.0, 1.0, 2.0, 3.0]), row(&[0.5, 1.5]));
+    let judge = |more: &str, theirs: &str| {
+        let files = [
+            ("base.obj", base.as_str()),
+            ("component.obj", &tile),
+            ("tissue.obj", theirs),
+        ];
+        let cyclic = "\"mode\": \"LOCAL\", \"bounds_x\": \"CYCLIC\", \"scale_mode\": \"CONSTANT\"";
+        of(
+            &format!("{cyclic}, \"merge\": true, \"merge_thres\": 0.01{more}"),
+            &files,
+        )
+    };
+    let healed = ", \"bool_dissolve_seams\": true";
+    let verdict = judge(healed, &row(&[0.0, 0.5, 1.5, 2.5, 3.0]));
+    assert!(matches!(verdict, Verdict::ReproducedWelded), "{verdict}");
+    let verdict = judge("", &row(&[0.0, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0]));
+    assert!(matches!(verdict, Verdict::ReproducedWelded), "{verdict}");
+}
+
+#[test]
+fn neighbours_are_merged_within_a_distance() {
+    // A component that leaves a gap of 0.02 between neighbours.
+    let (base, tile) = (row(&[0.0, 1.0, 2.0]), row(&[0.01, 0.99]));
+    let merged = row(&[0.01, 0.99, 1.99]);
+    let apart = pieces(&[0.0, 1.0].map(|x| {
+        let places = [[0.01, 0.0], [0.99, 0.0], [0.99, 1.0], [0.01, 1.0]];
+        (
+            places.map(|[u, v]| [u + x, v, 0.0]).to_vec(),
+            vec![vec![0, 1, 2, 3]],
+        )
+    }));
+    let apart = obj(&apart.0, &apart.1);
+    for (more, theirs) in [
+        ("\"merge_thres\": 0.03", &merged),
+        (
+            "\"merge_thres\": 0.03, \"merge_open_edges_only\": true",
+            &merged,
+        ),
+        ("\"merge_thres\": 0.01", &apart),
+        ("\"merge_thres\": 0.0001", &apart),
+    ] {
+        let files = [
+            ("base.obj", base.as_str()),
+            ("component.obj", &tile),
+            ("tissue.obj", theirs),
+        ];
+        let local = "\"mode\": \"LOCAL\", \"scale_mode\": \"CONSTANT\", \"merge\": true";
+        let verdict = of(&format!("{local}, {more}"), &files);
+        assert!(matches!(verdict, Verdict::Reproduced), "{more}: {verdict}");
+    }
 }

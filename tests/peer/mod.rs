@@ -12,6 +12,7 @@ mod folders;
 mod mapped;
 mod patch;
 mod settings;
+mod towards;
 mod triangles;
 
 use std::path::PathBuf;

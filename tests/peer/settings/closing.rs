@@ -1,4 +1,4 @@
-//! Neighbours merged, and what stays open closed.
+//! Seams dissolved, and what stays open closed.
 
 use super::Settings;
 
@@ -9,6 +9,11 @@ pub(super) fn close(settings: &mut Settings) {
     let known = ["NONE", "CAP", "BRIDGE", "BRIDGE_CAP"];
     let closing = settings.one_of("close_mesh", "NONE", &known);
     let mut mesh = "arrayed";
+    // Where the component was cut; its own seams are in the scene only.
+    if settings.cuts && settings.flag("bool_dissolve_seams") {
+        settings.node("whole", "DissolveEdges(mesh: \"arrayed\")");
+        mesh = "whole";
+    }
     if merge && closing.starts_with("BRIDGE") {
         let only = chosen(settings, mesh, "bridge");
         let bridged = format!("BridgeLoops(mesh: \"{mesh}\"{only})");

@@ -56,6 +56,7 @@ pub(super) fn component(settings: &mut Settings, uv_layer: bool) -> Component {
     } else if beyond == ["Extend", "Extend"] {
         settings.node("placed", &format!("Transform(mesh: \"{high}\")"));
     } else {
+        settings.cuts = true;
         let [x, y] = beyond;
         let fitted = format!("FitComponent(component: \"{high}\", fit: Unit, x: {x}, y: {y})");
         settings.node("placed", &fitted);

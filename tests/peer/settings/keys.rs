@@ -3,9 +3,7 @@
 use serde_json::{Map, Value, json};
 
 /// Read by nothing in the add-on, by its own account; names of objects that are
-/// files here; what only a Blender scene shows; and by which distance neighbours
-/// are merged, and whether only at open edges: here they are joined by topology,
-/// at borders only and without a distance.
+/// files here; and what only a Blender scene shows.
 const IDLE: &[&str] = &[
     "bool_advanced",
     "bool_combine",
@@ -21,8 +19,6 @@ const IDLE: &[&str] = &[
     "error_message",
     "gen_modifiers",
     "generator",
-    "merge_open_edges_only",
-    "merge_thres",
     "target",
     "vertex_group_bridge_owner",
     "vertex_group_cap_owner",
@@ -46,6 +42,8 @@ const DEPENDENT: &[(&str, &[&str])] = &[
     ("rand_seed", &["rotation_mode"]),
     ("rand_step", &["rotation_mode"]),
     ("material_id", &["bool_material_id"]),
+    ("merge_thres", &["merge"]),
+    ("merge_open_edges_only", &["merge"]),
     ("combine_mode", &["iterations"]),
     ("patch_subs", &["iterations"]),
     ("cap_material_offset", &[]),
@@ -60,7 +58,7 @@ fn defaults() -> Value {
         "component_mode": "OBJECT", "rotation_mode": "DEFAULT", "rotation_direction": "ORTHO",
         "rotation_shift": 0, "bool_shapekeys": false, "bool_selection": false,
         "bool_material_id": false, "bool_dissolve_seams": false, "iterations": 1,
-        "close_mesh": "NONE", "auto_rotate_boundary": false, "use_origin_offset": true,
+        "close_mesh": "NONE", "merge": false, "merge_open_edges_only": false, "auto_rotate_boundary": false, "use_origin_offset": true,
         "vertex_group_thickness": "", "invert_vertex_group_thickness": false,
         "vertex_group_thickness_factor": 0.0, "vertex_group_frame_thickness": "",
         "invert_vertex_group_frame_thickness": false, "vertex_group_frame_thickness_factor": 0.0,
@@ -73,6 +71,55 @@ fn defaults() -> Value {
         "frame_boundary_thickness": 0.0,
     })
 }
+
+/// What no graph here asks for, each with its reason; the first word of a reason
+/// about some values of a key is "with".
+pub(super) const WITHOUT_COUNTERPART: &[(&str, &str)] = &[
+    ("a_key_of_a_later_version", "nobody knows what it asks for"),
+    (
+        "bool_dissolve_seams",
+        "with a component that is not cut: its seams are marks in the scene",
+    ),
+    (
+        "bool_selection",
+        "with several passes: what a pass made has no selection in a folder",
+    ),
+    (
+        "bool_shapekeys",
+        "shapes of one mesh are files of their own here",
+    ),
+    ("coll_rand_seed", "of COLLECTION"),
+    (
+        "combine_mode",
+        "with UNUSED: which faces of a pass are unused is in the scene only",
+    ),
+    ("component_coll", "of COLLECTION"),
+    (
+        "component_mode",
+        "with COLLECTION and MATERIALS: further components are objects of the scene",
+    ),
+    ("invert_vertex_group_bridge", "of a group of the component"),
+    ("invert_vertex_group_cap", "of a group of the component"),
+    (
+        "normals_mode",
+        "with SHAPEKEYS, and FACES over patches: patches have no face of their own",
+    ),
+    ("rand_seed", "of RANDOM"),
+    ("rand_step", "of RANDOM"),
+    ("rotation_mode", "with RANDOM: numpy's random numbers"),
+    (
+        "vertex_group_bridge",
+        "with a group of the component, of which a folder holds nothing",
+    ),
+    (
+        "vertex_group_cap",
+        "with a group of the component, of which a folder holds nothing",
+    ),
+    (
+        "vertex_group_thickness",
+        "with other groups, or in later passes unmapped: a folder holds one group",
+    ),
+];
 
 /// Takes out of `settings` what asks for nothing: idle keys, values that are
 /// the default, and dependent keys whose governing key is one of these.

@@ -2,6 +2,7 @@
 
 mod closing;
 mod component;
+mod directions;
 mod domains;
 mod keys;
 mod passes;
@@ -37,6 +38,8 @@ pub(super) enum Request {
 pub(super) struct Holds {
     /// `weights.csv`: a vertex group of the base, one weight per vertex.
     pub(super) weights: bool,
+    /// A `target.obj` with as many vertices and faces as the base.
+    pub(super) target: bool,
     /// `selection.csv`: 1 for each selected face of the base, 0 for the others.
     pub(super) selection: bool,
     /// Names of the base's materials, in the order of their first faces.
@@ -53,6 +56,8 @@ struct Settings {
     holds: Holds,
     /// Whether this is a pass over what the pass before made.
     is_later: bool,
+    /// Whether the component is cut at the sides of the square.
+    cuts: bool,
     /// Whether groups of the base are brought onto the result.
     maps_groups: bool,
 }
@@ -74,6 +79,7 @@ impl Settings {
             nodes: Vec::new(),
             holds: holds.clone(),
             is_later,
+            cuts: false,
             maps_groups,
         }
     }

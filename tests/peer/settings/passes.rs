@@ -2,7 +2,8 @@
 
 use serde_json::{Value, json};
 
-use super::{Holds, LATER_PASS, Request, Settings, closing, component, domains, placing};
+use super::{Holds, LATER_PASS, Request, Settings};
+use super::{closing, component, directions, domains, placing};
 
 /// The graph of a case, and that of its later passes if it has any.
 pub(super) fn graph(document: &Value, holds: &Holds) -> Request {
@@ -58,12 +59,12 @@ fn one_pass(settings: &mut Settings, document: &Value) {
     let domains = domains::domains(settings, &component);
     domains.of("read", "base", settings);
     domains.turn_components(settings);
-    if settings.is("normals_mode", "OBJECT") {
+    if settings.is("normals_mode", "OBJECT") && settings.holds.target {
         settings.node("read_target", "ReadMesh(path: \"target.obj\")");
         domains.of("read_target", "target", settings);
     }
-    placing::directions(settings);
-    placing::array(settings, &component);
+    let cells = directions::directions(settings);
+    placing::array(settings, &component, cells);
     closing::close(settings);
     if settings.is_later {
         settings.node("result", "Transform(mesh: \"pass\")");

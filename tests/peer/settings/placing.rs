@@ -1,91 +1,21 @@
-//! Directions, and the array along them.
-
-use serde_json::Value;
+//! The array along its directions.
 
 use super::Settings;
 use super::component::Component;
+use super::directions::Cells;
 
-/// The directions, as node `directions`.
-pub(super) fn directions(settings: &mut Settings) {
-    let constant = settings.is("scale_mode", "CONSTANT");
-    let known = ["VERTS", "OBJECT", "CUSTOM"];
-    match settings.one_of("normals_mode", "VERTS", &known).as_str() {
-        "OBJECT" => {
-            let length = if constant { "Unit" } else { "Target" };
-            let towards =
-                format!("TargetDirections(mesh: \"base\", target: \"target\", length: {length})");
-            settings.node("directions", &towards);
-            if settings.left.contains_key("even_thickness") {
-                // The add-on smooths another field then, which it does not use.
-                settings.flag("smooth_normals");
-                settings.left.remove("smooth_normals_iter");
-            }
-        }
-        // The mean of the corners' normals, not normalised; with flat shading a
-        // corner has the normal of its face. Smoothing it makes the add-on fail.
-        "CUSTOM" => {
-            settings.flag("smooth_normals");
-            settings.left.remove("smooth_normals_iter");
-            settings.node("directions", "FaceNormals(mesh: \"base\", unit: false)");
-        }
-        _ => along_normals(settings, constant),
-    }
-    if !settings.left.contains_key("smooth_normals") {
-        settings.left.remove("smooth_normals_iter");
-    }
-}
-
-/// Vertex normals, smoothed, and scaled along the axes.
-fn along_normals(settings: &mut Settings, constant: bool) {
-    let factors = ["normals_x", "normals_y", "normals_z"].map(|key| settings.number(key, 1.0));
-    let smooth = settings.flag("smooth_normals");
-    let passes = settings.number("smooth_normals_iter", 5.0);
-    let node = if smooth {
-        let weights = settings.group("vertex_group_smooth_normals").map(|weight| {
-            let field = format!("EvaluateField(mesh: \"base\", value: \"{weight}\")");
-            settings.node("part", &field);
-            ", weights: \"part\""
-        });
-        let anisotropy = settings.number("smooth_normals_uv", 0.0);
-        // With constant thickness a direction that ends up against the normal is
-        // turned round; with relative thickness it is left.
-        format!(
-            "SmoothNormals(mesh: \"base\", scheme: EdgeSum, iterations: {passes}, \
-             flip_inverted: {constant}, anisotropy: {anisotropy:?}{})",
-            weights.unwrap_or_default()
-        )
-    } else {
-        // Without smoothing nothing reads its group.
-        settings.left.remove("vertex_group_smooth_normals");
-        settings.left.remove("invert_vertex_group_smooth_normals");
-        settings.left.remove("smooth_normals_uv");
-        "VertexNormals(mesh: \"base\")".to_owned()
-    };
-    let [x, y, z] = factors;
-    if factors.iter().all(|factor| (factor - 1.0).abs() <= 0.0) {
-        settings.node("directions", &node);
-    } else {
-        settings.node("unscaled", &node);
-        let scaled = format!(
-            "ScaleDirections(mesh: \"base\", directions: \"unscaled\", factors: ({x:?}, {y:?}, {z:?}))"
-        );
-        settings.node("directions", &scaled);
-    }
-}
-
-/// The array, as node `arrayed`.
-pub(super) fn array(settings: &mut Settings, component: &Component) {
+/// The array, as node `apart`, and with its neighbours joined as node `arrayed`.
+pub(super) fn array(settings: &mut Settings, component: &Component, cells: Cells) {
+    let base = cells.base();
     // Files hold places in the world: both read x and y as they are.
     settings.one_of("mode", "BOUNDS", &["BOUNDS", "LOCAL", "GLOBAL"]);
     let known = ["ADAPTIVE", "CONSTANT"];
-    let height = match settings.one_of("scale_mode", "ADAPTIVE", &known).as_str() {
-        "CONSTANT" => "Absolute",
-        _ => "Relative",
+    let relative = settings.one_of("scale_mode", "ADAPTIVE", &known) != "CONSTANT";
+    let height = match cells {
+        Cells::Joined if relative => "Relative",
+        _ => "Absolute",
     };
-    let join = match settings.left.get("merge") {
-        Some(Value::Bool(true)) => "Weld",
-        _ => "None",
-    };
+    let join = Join::of(settings, cells);
     let mut more = String::new();
     if settings.is("fill_mode", "PATCH") && settings.left.get("base_modifiers").is_none() {
         settings.left.remove("fill_mode");
@@ -96,8 +26,8 @@ pub(super) fn array(settings: &mut Settings, component: &Component) {
         more += ", compensate: PerVertex";
     }
     settings.left.remove("even_thickness_iter");
-    if let Some(weight) = settings.group("vertex_group_thickness") {
-        let field = format!("EvaluateField(mesh: \"base\", value: \"{weight}\")");
+    if let Some(factor) = factor(settings, component, relative && cells == Cells::Flat) {
+        let field = format!("EvaluateField(mesh: \"{base}\", value: \"{factor}\")");
         settings.node("factor", &field);
         more += ", scale: \"factor\"";
     }
@@ -109,12 +39,71 @@ pub(super) fn array(settings: &mut Settings, component: &Component) {
         more += ", carry: [\"w\"]";
     }
     let array = format!(
-        "ArrayComponents(base: \"base\", {}, directions: \"directions\", fit: {}, \
-         height: {height}, interpolation: Linear, join: {join}{more})",
+        "ArrayComponents(base: \"{base}\", {}, directions: \"directions\", fit: {}, \
+         height: {height}, interpolation: Linear, join: {}{more})",
         component.inputs(),
-        component.fit
+        component.fit,
+        if join == Join::ByTopology {
+            "Weld"
+        } else {
+            "None"
+        }
     );
-    settings.node("arrayed", &array);
+    settings.node("apart", &array);
+    let joined = match join {
+        Join::ByDistance(distance, border_only) => format!(
+            "WeldVertices(mesh: \"apart\", distance: {distance:?}, border_only: {border_only})"
+        ),
+        _ => "Transform(mesh: \"apart\")".to_owned(),
+    };
+    settings.node("arrayed", &joined);
+}
+
+/// How neighbours are joined. The add-on goes by distance alone; at its default
+/// distance that comes to the joints of shared edges.
+#[derive(Clone, Copy, PartialEq)]
+enum Join {
+    Not,
+    ByTopology,
+    /// The distance, and whether only at open borders.
+    ByDistance(f64, bool),
+}
+
+impl Join {
+    fn of(settings: &mut Settings, cells: Cells) -> Self {
+        // Its group still asks for `merge` later on, to be closed.
+        if settings.left.get("merge") != Some(&true.into()) {
+            return Self::Not;
+        }
+        let distance = settings.number("merge_thres", DISTANCE);
+        let border_only = settings.flag("merge_open_edges_only");
+        let usual = (distance / DISTANCE - 1.0).abs() < 1e-6 && !border_only;
+        if usual && cells == Cells::Joined {
+            Self::ByTopology
+        } else {
+            Self::ByDistance(distance, border_only)
+        }
+    }
+}
+
+/// The add-on's default of `merge_thres`.
+const DISTANCE: f64 = 1e-4;
+
+/// The factor on heights as a formula: a group's weight, and for flat cells the size
+/// of the faces round a vertex against the component's.
+fn factor(settings: &mut Settings, component: &Component, by_size: bool) -> Option<String> {
+    let weight = settings.group("vertex_group_thickness");
+    if !by_size {
+        return weight;
+    }
+    let area = if component.fit == "Bounds" {
+        settings.node("extent", "MeasureMesh(mesh: \"component\")");
+        "extent.size_x * extent.size_y"
+    } else {
+        "1"
+    };
+    let weight = weight.unwrap_or("1".to_owned());
+    Some(format!("sqrt(size / ({area})) * ({weight})"))
 }
 
 /// The input that leaves faces out: those not selected, those of other materials.

@@ -1,9 +1,11 @@
 //! Every property of the add-on is understood or refused by its name.
 
 use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
 
 use tessgraph_graph::world::MemoryWorld;
 
+use super::keys::WITHOUT_COUNTERPART;
 use super::{Holds, LATER_PASS, Request, graph};
 use crate::support::{self, workspace};
 
@@ -26,6 +28,15 @@ const UNDERSTOOD: &[&str] = &[
        "invert_vertex_group_smooth_normals": true"#,
     r#""normals_x": 1.0, "normals_y": 1.0, "normals_z": 0.0"#,
     r#""normals_mode": "CUSTOM", "smooth_normals": true"#,
+    r#""normals_mode": "FACES", "smooth_normals": true, "auto_rotate_boundary": true,
+       "normals_z": 0.5, "vertex_group_scale_normals": "W", "merge": true"#,
+    r#""normals_mode": "OBJECT", "smooth_normals": true, "smooth_normals_iter": 3"#,
+    r#""normals_mode": "OBJECT", "smooth_normals": true, "scale_mode": "CONSTANT",
+       "vertex_group_smooth_normals": "W", "smooth_normals_uv": 0.5"#,
+    r#""vertex_group_scale_normals": "W", "invert_vertex_group_scale_normals": true,
+       "normals_x": 0.0"#,
+    r#""vertex_group_scale_normals": "W", "invert_vertex_group_scale_normals": true"#,
+    r#""bool_dissolve_seams": true, "mode": "LOCAL", "bounds_x": "CYCLIC", "merge": true"#,
     r#""normals_mode": "OBJECT", "even_thickness": true, "even_thickness_iter": 4,
        "scale_mode": "CONSTANT", "target": "T""#,
     r#""vertex_group_thickness": "W", "invert_vertex_group_thickness": true,
@@ -83,15 +94,10 @@ const REFUSED: &[(&str, &[&str])] = &[
     ),
     // Components named as materials are in the scene only.
     (r#""component_mode": "MATERIALS""#, &["component_mode"]),
-    // A face's own normal for all its corners would tear the surface apart.
-    (r#""normals_mode": "FACES""#, &["normals_mode"]),
-    // Bending of whole normal fields by a group, and what edits seams or loops.
+    // A patch has no one face that is flat.
     (
-        r#""vertex_group_scale_normals": "W", "invert_vertex_group_scale_normals": true"#,
-        &[
-            "vertex_group_scale_normals",
-            "invert_vertex_group_scale_normals",
-        ],
+        r#""normals_mode": "FACES", "fill_mode": "PATCH""#,
+        &["normals_mode"],
     ),
     (r#""bool_dissolve_seams": true"#, &["bool_dissolve_seams"]),
     // Groups of the component, of which a folder holds nothing.
@@ -124,11 +130,6 @@ const REFUSED: &[(&str, &[&str])] = &[
         r#""iterations": 2, "combine_mode": "UNUSED""#,
         &["combine_mode"],
     ),
-    // Vectors to a target that are smoothed at their own lengths.
-    (
-        r#""normals_mode": "OBJECT", "smooth_normals": true"#,
-        &["smooth_normals"],
-    ),
     (
         r#""a_key_of_a_later_version": 1"#,
         &["a_key_of_a_later_version"],
@@ -141,6 +142,7 @@ fn request(settings: &str) -> Request {
     let holds = Holds {
         weights: true,
         selection: true,
+        target: true,
         base_materials: names(["Glass", "Stone"]),
         component_materials: names(["Glass", "Steel"]),
     };
@@ -177,12 +179,30 @@ fn what_has_none_is_refused_by_name() {
 }
 
 #[test]
+fn all_that_is_refused_has_its_reason() {
+    let refused: BTreeSet<&str> = REFUSED
+        .iter()
+        .flat_map(|(_, keys)| *keys)
+        .copied()
+        .collect();
+    let reasons = WITHOUT_COUNTERPART.iter().map(|(key, _)| *key);
+    assert_eq!(refused, reasons.collect());
+    assert!(WITHOUT_COUNTERPART.is_sorted());
+}
+
+/// The list of the add-on's properties, beside this checkout or one further up.
+fn list() -> Option<PathBuf> {
+    let named = |folder: &Path| folder.join("shared/peer/tissue/features.md");
+    let workspace = workspace();
+    workspace.ancestors().map(named).find(|path| path.is_file())
+}
+
+#[test]
 fn every_property_of_the_add_on_is_looked_at() {
-    let list = workspace().join("../shared/peer/tissue/features.md");
-    if !list.is_file() {
-        println!("skipped: {} is not here", list.display());
+    let Some(list) = list() else {
+        println!("skipped: the list of properties is not here");
         return;
-    }
+    };
     let text = support::text_of(&list);
     let rows = text.lines().filter_map(|line| line.strip_prefix("| `"));
     // The name of a UV layer, which cases name apart, is no property.
