@@ -3,7 +3,9 @@
 use std::sync::Arc;
 
 use tessgraph_geometry::Mesh;
-use tessgraph_geometry::subdivide::{self, Boundary, MAX_LEVELS, Options, Positions, Scheme};
+use tessgraph_geometry::subdivide::{
+    self, Boundary, CornerRule, MAX_LEVELS, Options, Positions, Scheme,
+};
 use tessgraph_graph::{EvalCx, Node, NodeError};
 use tessgraph_macros::{Choice, Inputs};
 
@@ -37,6 +39,19 @@ pub(crate) struct SubdivideQuad {
     /// Where the vertices end up.
     #[input(default = Refined)]
     positions: PositionsChoice,
+    /// How texture coordinates follow.
+    #[input(default = Linear, only_with(scheme = CatmullClark))]
+    uv: CornerRuleChoice,
+}
+
+/// How texture coordinates follow.
+#[derive(Clone, Copy, Choice)]
+#[choice(into = CornerRule)]
+pub(crate) enum CornerRuleChoice {
+    /// Bilinear in each coarse face: patterns bend at its edges.
+    Linear,
+    /// Rounded like the surface, so that patterns run on; islands keep their corners.
+    Smooth,
 }
 
 /// Subdivision schemes.
@@ -78,6 +93,7 @@ impl Node for SubdivideQuad {
             levels: self.levels,
             boundary: self.boundary.into(),
             positions: self.positions.into(),
+            uv: self.uv.into(),
         };
         let subdivision = subdivide::subdivide(&self.mesh, options, cx.monitor())
             .map_err(|error| NodeError::from(error).at_input("mesh"))?;

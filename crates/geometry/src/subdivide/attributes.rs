@@ -4,6 +4,7 @@ use crate::mesh::{Attribute, AttributeValues, Domain, Mesh};
 use crate::{GeometryError, Monitor};
 
 use super::Scheme;
+use super::corners;
 use super::faces::Blocks;
 use super::refiner::Refiner;
 use super::sharpness::{CORNER_SHARPNESS, CREASE, decayed_attribute};
@@ -39,6 +40,9 @@ pub(super) fn inherit(
             }
             // Nothing uses a seam up.
             (Domain::Corner, SEAM) => left_on_edges(attribute, 0, blocks, monitor)?,
+            (Domain::Corner, _) if corners::are_smooth(attribute, refiner.options) => {
+                corners::smooth(coarse, attribute, refiner.options, monitor)?
+            }
             (Domain::Corner, _) => blocks.corner_values(attribute.values(), monitor)?,
         };
         fine = fine.with_attribute(attribute.with_values(values))?;

@@ -3,6 +3,7 @@
 mod attributes;
 mod bilinear;
 mod cage;
+mod corners;
 mod counts;
 mod faces;
 mod limit;
@@ -61,6 +62,17 @@ pub enum Positions {
     Limit,
 }
 
+/// How pairs on corners, texture coordinates, are refined.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum CornerRule {
+    /// Bilinear in each coarse face.
+    #[default]
+    Linear,
+    /// As positions, by the same scheme, on the surface that equal values at shared
+    /// vertices make: seams are its borders, and keep their corners.
+    Smooth,
+}
+
 /// How [`subdivide`] works.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Options {
@@ -72,6 +84,8 @@ pub struct Options {
     pub boundary: Boundary,
     /// Where the refined vertices end up; bilinear ones are there already.
     pub positions: Positions,
+    /// How texture coordinates are refined.
+    pub uv: CornerRule,
 }
 
 /// A subdivided mesh and the grids its faces form.
@@ -100,7 +114,7 @@ pub struct Subdivision {
 /// parent's vertices side by side in memory.
 ///
 /// Vertex attributes follow the masks of positions, corner attributes are
-/// bilinear in each parent (UV seams stay sharp), face attributes, materials,
+/// bilinear in each parent (UV seams stay sharp; pairs follow [`CornerRule`]), face attributes, materials,
 /// groups and objects come from the parent. Whole numbers are taken from the
 /// nearest coarse element. Both sharpness attributes hold what is left, so that
 /// a then b levels are a + b levels.

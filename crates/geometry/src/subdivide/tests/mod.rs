@@ -3,6 +3,7 @@
 
 mod baseline;
 mod closed;
+mod corners;
 mod inherit;
 mod limits;
 mod oracle;
@@ -12,7 +13,8 @@ mod properties;
 use glam::DVec3;
 
 use super::{
-    Boundary, CORNER_SHARPNESS, CREASE, Options, Positions, Scheme, Subdivision, subdivide,
+    Boundary, CORNER_SHARPNESS, CREASE, CornerRule, Options, Positions, Scheme, Subdivision,
+    subdivide,
 };
 use crate::mesh::{Attribute, AttributeValues, Domain, Mesh};
 use crate::{GeometryError, Unmonitored};

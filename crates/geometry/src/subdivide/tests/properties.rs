@@ -34,6 +34,7 @@ fn bent() -> impl Strategy<Value = Mesh> {
 fn options() -> impl Strategy<Value = Options> {
     (0u32..4, any::<bool>(), any::<bool>(), any::<bool>()).prop_map(|(level, a, b, c)| Options {
         levels: level,
+        uv: CornerRule::Linear,
         scheme: if c {
             Scheme::CatmullClark
         } else {
