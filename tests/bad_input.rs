@@ -120,6 +120,23 @@ fn two_walls_have_room_for_half_their_gap() {
         ],
     );
     assert_eq!(ran.count("out.unsolved"), 50);
+    // All of them on the outer side, and each in the field; half the way inward is free.
+    assert_eq!(ran.count("out.outward_unsolved"), 50);
+    assert_eq!(ran.count("out.inward_unsolved"), 0);
+    let statuses = |name: &str| match ran.value(name) {
+        Value::Field(field) => field.values().to_vec(),
+        other => panic!("{name} is {:?}", other.kind()),
+    };
+    assert!(
+        statuses("out.outward_status")
+            .iter()
+            .all(|status| (status - 3.0).abs() < 0.5)
+    );
+    assert!(
+        statuses("out.inward_status")
+            .iter()
+            .all(|status| status.abs() < 1.5)
+    );
     assert!((ran.number("room.min_outward") - 0.8).abs() < 1e-9);
     let Value::Directions(found) = ran.value("out.directions") else {
         panic!("directions");

@@ -4,7 +4,9 @@ use std::sync::Arc;
 
 use tessgraph_geometry::compensate::SideReport;
 use tessgraph_geometry::subdivide::Parents;
-use tessgraph_geometry::{Amount, Directions, Field, GeometryError, Mesh, PatchGrids};
+use tessgraph_geometry::{
+    Amount, Directions, Domain, Field, GeometryError, Mesh, PatchGrids, Quantity,
+};
 use tessgraph_geometry::{
     ArrayDomain, ArrayOptions, Arrayed, Height, Interpolation, Join, PerVertexOptions,
     PerVertexReport, array_compensated, array_components, list_ids,
@@ -31,7 +33,11 @@ use crate::support::choice_of_components::{Cells, Chooser, Per, first_of_source}
 /// With `compensate: PerVertex` every vertex of the component is brought to its own
 /// height from the base surface, whatever the directions: what a fabricator uses.
 /// The directions are then those before `CompensateThickness`; their lengths make
-/// no difference.
+/// no difference. A vertex counts as unsolved where two walls leave no room for it, and
+/// where it begins off the surface: on a warped quad a component follows the bilinear
+/// patch, and one lower than the warp (`CheckPlanarity`) may be farther from the quad's
+/// triangles than it shall be before it moves. It is then left at its height along the
+/// direction; subdivide the base, or split its warped quads.
 ///
 /// After `SubdivideQuad`, `domain: Parent` maps one component over all the small
 /// faces of each coarse one: it follows the rounded surface inside a panel.
@@ -84,9 +90,10 @@ pub(crate) struct ArrayComponents {
     /// Which of the components each face takes.
     #[input(default = First)]
     choose: ChooseChoice,
-    /// Index of the component of each face, rounded down; below 0 for none.
+    /// Index of the component of each face, rounded down; below 0 for none. A number
+    /// or one per face.
     #[input(only_with(choose = Index))]
-    index: Option<Arc<Field>>,
+    index: Option<Amount>,
     /// For each component the name of the material whose faces take it.
     #[input(only_with(choose = Material))]
     materials: Option<Vec<String>>,
@@ -94,9 +101,10 @@ pub(crate) struct ArrayComponents {
     /// all the same.
     #[input(only_with(choose = Random))]
     weights: Option<Vec<f64>>,
-    /// Value of each face: 0 takes the first component, 1 the last.
+    /// Value of each face: 0 takes the first component, 1 the last. A number or one
+    /// per face.
     #[input(only_with(choose = Gradient))]
-    gradient: Option<Arc<Field>>,
+    gradient: Option<Amount>,
     /// How much chance blurs the bands of a gradient: 0 not at all, 1 over all of it.
     #[input(default = 0.0, min = 0, max = 1, only_with(choose = Gradient))]
     randomness: f64,
@@ -150,6 +158,10 @@ pub(crate) struct ArrayedComponents {
     /// Vertices without a solution on both sides together; this and all below are
     /// 0 without `compensate: PerVertex`, and leave out vertices at height 0.
     unsolved: usize,
+    /// What became of each vertex: 0 at its height, 1 from the continued border, 2 from
+    /// the base but not from its continued border, 3 unsolved, -1 at height 0. Empty
+    /// without `compensate: PerVertex`.
+    status: Arc<Field>,
     /// Vertices above the base at their height from it.
     outward_solved: usize,
     /// Vertices above the base at their height from the continued border.
@@ -248,6 +260,7 @@ pub(crate) enum JoinChoice {
 
 impl Node for ArrayComponents {
     type Output = ArrayedComponents;
+    const VERSION: u32 = 2;
 
     fn eval(self, cx: &EvalCx<'_>) -> Result<Self::Output, NodeError> {
         let fit = self.fit.with_cell(self.cell.clone())?;
@@ -290,7 +303,15 @@ impl Node for ArrayComponents {
             warn(cx, "above", &report.outward, &report.outward_faces);
             warn(cx, "below", &report.inward, &report.inward_faces);
         }
-        Ok(ArrayedComponents::new(array, &report.unwrap_or_default()))
+        let status = match &report {
+            Some(report) => {
+                let sides = [&report.outward, &report.inward];
+                SideReport::status_field(&sides, array.mesh.vertex_count())?
+            }
+            None => Field::new(Domain::Vertex, Quantity::Number, Vec::new())?,
+        };
+        let report = report.unwrap_or_default();
+        Ok(ArrayedComponents::new(array, &report, status))
     }
 }
 
@@ -371,7 +392,7 @@ impl ArrayComponents {
         Ok(match self.choose {
             ChooseChoice::First => Chooser::First,
             ChooseChoice::Index => {
-                let index = self.index.as_deref();
+                let index = self.index.as_ref();
                 Chooser::Index(index.ok_or_else(|| missing("index", "a field of faces"))?)
             }
             ChooseChoice::Material => {
@@ -384,7 +405,7 @@ impl ArrayComponents {
                 seed,
             },
             ChooseChoice::Gradient => {
-                let field = self.gradient.as_deref();
+                let field = self.gradient.as_ref();
                 Chooser::Gradient {
                     field: field.ok_or_else(|| missing("gradient", "a field of faces"))?,
                     randomness: self.randomness,
@@ -418,7 +439,7 @@ impl ArrayComponents {
 }
 
 impl ArrayedComponents {
-    fn new(array: Arrayed, report: &PerVertexReport) -> Self {
+    fn new(array: Arrayed, report: &PerVertexReport, status: Field) -> Self {
         let PerVertexReport {
             outward, inward, ..
         } = report;
@@ -428,6 +449,7 @@ impl ArrayedComponents {
             mesh: Arc::new(array.mesh),
             skipped_parents: array.skipped_parents,
             unsolved: outward.unsolved.len() + inward.unsolved.len(),
+            status: Arc::new(status),
             outward_solved: outward.solved,
             outward_extended: outward.extended,
             outward_border_clipped: outward.border_clipped.len(),
@@ -451,8 +473,8 @@ fn warn(cx: &EvalCx<'_>, side: &str, report: &SideReport, faces: &[u32]) {
     if let Some(first) = report.unsolved.first() {
         let ids: Vec<u32> = report.unsolved.iter().map(|one| one.vertex).collect();
         cx.warn(format!(
-            "{side} the base, no solution at {} of {} vertices: {}; they are on base faces {}; \
-             vertex {} reaches {} of {}",
+            "{side} the base, no solution at {} of {} vertices: {} (3 in `status`); they are on \
+             base faces {}; vertex {} reaches {} of {}",
             ids.len(),
             report.vertices(),
             list_ids(&ids),

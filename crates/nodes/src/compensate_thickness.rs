@@ -5,7 +5,7 @@ use std::sync::Arc;
 use tessgraph_geometry::compensate::{self, Compensate, CompensateOptions, SideReport};
 use tessgraph_geometry::diffuse;
 use tessgraph_geometry::surface::Border;
-use tessgraph_geometry::{Amount, Directions, Mesh, list_ids};
+use tessgraph_geometry::{Amount, Directions, Field, Mesh, list_ids};
 use tessgraph_graph::{EvalCx, Node, NodeError};
 use tessgraph_macros::{Choice, Inputs, Outputs};
 
@@ -94,6 +94,28 @@ pub(crate) struct Compensated {
     border_clipped: usize,
     /// Vertices that could not reach their thickness.
     unsolved: usize,
+    /// Vertices at their thickness on the outer side.
+    outward_solved: usize,
+    /// Those at it from the continued border.
+    outward_extended: usize,
+    /// Those at it from the mesh, but not from its continued border.
+    outward_border_clipped: usize,
+    /// Those that could not reach it.
+    outward_unsolved: usize,
+    /// Vertices at their thickness on the inner side.
+    inward_solved: usize,
+    /// Those at it from the continued border.
+    inward_extended: usize,
+    /// Those at it from the mesh, but not from its continued border.
+    inward_border_clipped: usize,
+    /// Those that could not reach it.
+    inward_unsolved: usize,
+    /// What became of each vertex on the outer side: 0 solved, 1 from the continued
+    /// border, 2 from the mesh but not from its continued border, 3 unsolved, -1 for a
+    /// vertex of no face.
+    outward_status: Arc<Field>,
+    /// The same on the inner side.
+    inward_status: Arc<Field>,
     /// Distances evaluated.
     evaluations: i64,
     /// Widest angle between a direction and the normal.
@@ -108,7 +130,7 @@ pub(crate) struct Compensated {
 
 impl Node for CompensateThickness {
     type Output = Compensated;
-    const VERSION: u32 = 2;
+    const VERSION: u32 = 3;
 
     fn eval(self, cx: &EvalCx<'_>) -> Result<Self::Output, NodeError> {
         let options = CompensateOptions {
@@ -140,6 +162,16 @@ impl Node for CompensateThickness {
             extended: both(|side| side.extended),
             border_clipped: both(|side| side.border_clipped.len()),
             unsolved: both(|side| side.unsolved.len()),
+            outward_solved: found.outward.solved,
+            outward_extended: found.outward.extended,
+            outward_border_clipped: found.outward.border_clipped.len(),
+            outward_unsolved: found.outward.unsolved.len(),
+            inward_solved: found.inward.solved,
+            inward_extended: found.inward.extended,
+            inward_border_clipped: found.inward.border_clipped.len(),
+            inward_unsolved: found.inward.unsolved.len(),
+            outward_status: status(&found.outward, &self.mesh)?,
+            inward_status: status(&found.inward, &self.mesh)?,
             evaluations: sides
                 .iter()
                 .map(|side| side.evaluations.cast_signed())
@@ -152,6 +184,11 @@ impl Node for CompensateThickness {
     }
 }
 
+fn status(side: &SideReport, mesh: &Mesh) -> Result<Arc<Field>, NodeError> {
+    let field = SideReport::status_field(&[side], mesh.vertex_count())?;
+    Ok(Arc::new(field))
+}
+
 /// Names the vertices of one side that need a look.
 fn warn(cx: &EvalCx<'_>, side: &str, report: &SideReport) {
     if let Some(first) = report.unsolved.first() {
@@ -161,7 +198,8 @@ fn warn(cx: &EvalCx<'_>, side: &str, report: &SideReport) {
             .map(|unsolved| unsolved.vertex)
             .collect();
         cx.warn(format!(
-            "{side}, no solution at {} of {} vertices: {}; vertex {} reaches {} of {}{}",
+            "{side}, no solution at {} of {} vertices: {} (3 in `{side}_status`); \
+             vertex {} reaches {} of {}{}",
             ids.len(),
             total(report),
             list_ids(&ids),

@@ -11,7 +11,7 @@ mod tests;
 use glam::DVec3;
 
 pub use report::{Errors, SideReport, Unsolved};
-pub use solver::{Side, Solution, Solver, Start, Status};
+pub use solver::{NOT_MOVED, Side, Solution, Solver, Start, Status};
 
 use crate::math::{angle_between, unit_or_zero};
 use crate::mesh::Domain;

@@ -1,7 +1,8 @@
 //! How well a thickness is kept.
 
 use super::local::Found;
-use super::solver::{Solution, Status};
+use super::solver::{NOT_MOVED, Solution, Status};
+use crate::{Domain, Field, GeometryError, Quantity};
 
 /// Deviations |d' - t| / t from the wanted thickness.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -59,6 +60,8 @@ pub struct SideReport {
     pub border_clipped: Vec<u32>,
     /// Vertices that are not at their thickness, ascending.
     pub unsolved: Vec<Unsolved>,
+    /// Each vertex with its status, ascending.
+    pub statuses: Vec<(u32, Status)>,
     /// Vertices whose direction is so near the tangent that its length was
     /// limited, ascending; `Local` only.
     pub clamped: Vec<u32>,
@@ -88,6 +91,19 @@ impl SideReport {
         }))
     }
 
+    /// Statuses of `count` vertices by [`Status::number`], [`NOT_MOVED`] for those
+    /// that neither side has; no vertex may be on both.
+    ///
+    /// # Errors
+    /// None for vertices below `count`.
+    pub fn status_field(sides: &[&Self], count: usize) -> Result<Field, GeometryError> {
+        let mut values = vec![NOT_MOVED; count];
+        for &(vertex, status) in sides.iter().flat_map(|side| &side.statuses) {
+            values[vertex as usize] = status.number();
+        }
+        Field::new(Domain::Vertex, Quantity::Number, values)
+    }
+
     /// How many vertices there are on this side.
     pub fn vertices(&self) -> usize {
         self.solved + self.extended + self.border_clipped.len() + self.unsolved.len()
@@ -105,6 +121,7 @@ impl SideReport {
                 0.0
             };
             all.push(error);
+            report.statuses.push((vertex, solution.status));
             match solution.status {
                 Status::Solved => report.solved += 1,
                 Status::Extended => report.extended += 1,

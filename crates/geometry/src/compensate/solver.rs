@@ -43,6 +43,22 @@ pub enum Status {
     Unsolved,
 }
 
+impl Status {
+    /// Its number in a field of statuses: 0 solved, 1 extended, 2 border clipped, 3
+    /// unsolved; [`NOT_MOVED`] stands for points that need none.
+    pub fn number(self) -> f64 {
+        match self {
+            Self::Solved => 0.0,
+            Self::Extended => 1.0,
+            Self::BorderClipped => 2.0,
+            Self::Unsolved => 3.0,
+        }
+    }
+}
+
+/// Number of points without a status: not on this side, or of no face.
+pub const NOT_MOVED: f64 = -1.0;
+
 /// The length found for one point.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Solution {

@@ -35,14 +35,14 @@ pub(crate) enum Per {
 /// How components are chosen, with all it takes.
 pub(crate) enum Chooser<'a> {
     First,
-    Index(&'a Field),
+    Index(&'a Amount),
     Material(&'a [String]),
     Random {
         weights: Option<&'a [f64]>,
         seed: u64,
     },
     Gradient {
-        field: &'a Field,
+        field: &'a Amount,
         randomness: f64,
         seed: u64,
     },
@@ -146,9 +146,9 @@ impl Cells<'_> {
     }
 
     /// A field of faces as one value per cell.
-    fn values(&self, field: &Field, input: &'static str) -> Result<Field, NodeError> {
+    fn values(&self, field: &Amount, input: &'static str) -> Result<Field, NodeError> {
         field.check(self.base, Domain::Face).map_err(at(input))?;
-        let values = (0..self.count()).map(|cell| field.values()[self.chooser(cell)]);
+        let values = (0..self.count()).map(|cell| field.at(self.chooser(cell)));
         Field::new(Domain::Face, Quantity::Number, values.collect()).map_err(at(input))
     }
 
