@@ -188,6 +188,29 @@ impl Amount {
         }
     }
 
+    /// The numbers of all elements of `domain` of `mesh`, as a field.
+    ///
+    /// # Errors
+    /// As [`Amount::check`]; [`GeometryError::NonFiniteValue`] for a constant.
+    pub fn on(&self, mesh: &Mesh, domain: Domain) -> Result<Arc<Field>, GeometryError> {
+        self.check(mesh, domain)?;
+        match self {
+            Self::Field(field) => Ok(Arc::clone(field)),
+            Self::Constant(number) => {
+                let values = vec![*number; mesh.element_count(domain)];
+                Field::new(domain, Quantity::Number, values).map(Arc::new)
+            }
+        }
+    }
+
+    /// The elements of a field, or `otherwise` for a constant, which is on all.
+    pub fn domain_or(&self, otherwise: Domain) -> Domain {
+        match self {
+            Self::Constant(_) => otherwise,
+            Self::Field(field) => field.domain(),
+        }
+    }
+
     /// The smallest and the largest number that occurs; the constant twice.
     pub fn range(&self) -> (f64, f64) {
         match self {

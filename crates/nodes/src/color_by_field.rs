@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use tessgraph_geometry::{Attribute, AttributeValues, Field, Mesh};
+use tessgraph_geometry::{Amount, Attribute, AttributeValues, Domain, Mesh};
 use tessgraph_graph::{EvalCx, Node, NodeError};
 use tessgraph_io::viridis;
 use tessgraph_macros::{Inputs, Outputs};
@@ -25,8 +25,8 @@ use tessgraph_macros::{Inputs, Outputs};
 pub(crate) struct ColorByField {
     /// Mesh to colour.
     mesh: Arc<Mesh>,
-    /// One number per vertex or face of the mesh.
-    field: Arc<Field>,
+    /// One number per vertex or face of the mesh; a number colours all alike.
+    field: Amount,
     /// The number shown dark blue; left out, the field's smallest.
     low: Option<f64>,
     /// The number shown yellow; left out, the field's largest.
@@ -48,8 +48,9 @@ impl Node for ColorByField {
     type Output = Colored;
 
     fn eval(self, _: &EvalCx<'_>) -> Result<Self::Output, NodeError> {
-        self.field.check(&self.mesh, self.field.domain())?;
-        let values = self.field.values();
+        let domain = self.field.domain_or(Domain::Vertex);
+        let field = self.field.on(&self.mesh, domain)?;
+        let values = field.values();
         let range = values
             .iter()
             .fold(None, |range: Option<(f64, f64)>, &value| {
@@ -75,7 +76,7 @@ impl Node for ColorByField {
         };
         let colors = values.iter().map(|&value| viridis(along(value))).collect();
         let values = AttributeValues::Vector3(colors);
-        let attribute = Attribute::new("color", self.field.domain(), values);
+        let attribute = Attribute::new("color", domain, values);
         let mesh = Arc::new(Mesh::clone(&self.mesh).with_attribute(attribute)?);
         Ok(Colored { mesh, low, high })
     }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use tessgraph_geometry::domains::{self, Along, chosen_faces};
 use tessgraph_geometry::glam::DVec2;
-use tessgraph_geometry::{Amount, AttributeValues, Domain, Field, Mesh, border_turns};
+use tessgraph_geometry::{Amount, AttributeValues, Domain, Mesh, border_turns};
 use tessgraph_graph::{EvalCx, Node, NodeError};
 use tessgraph_macros::{Choice, Inputs};
 
@@ -48,9 +48,9 @@ pub(crate) struct RotateFaces {
     /// Name of the layer of texture coordinates; left out, the first.
     #[input(only_with(by = UvLayer))]
     layer: Option<String>,
-    /// The field, one number per vertex.
+    /// The field, one number per vertex; a number is level and turns nothing.
     #[input(only_with(by = Gradient))]
-    field: Option<Arc<Field>>,
+    field: Option<Amount>,
     /// What of the component points uphill.
     #[input(default = Edges, only_with(by = Gradient))]
     along: AlongChoice,
@@ -147,7 +147,11 @@ impl RotateFaces {
                         .at_input("by")
                 })?;
                 let along = self.along.into();
-                domains::turns_along_gradient(mesh, field, along, self.downhill)
+                field
+                    .on(mesh, Domain::Vertex)
+                    .and_then(|field| {
+                        domains::turns_along_gradient(mesh, &field, along, self.downhill)
+                    })
                     .map_err(|error| NodeError::from(error).at_input("field"))
             }
         }

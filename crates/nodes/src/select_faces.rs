@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use tessgraph_geometry::domains;
-use tessgraph_geometry::{Domain, Field, Mesh, Quantity, faces_named};
+use tessgraph_geometry::{Amount, Domain, Field, Mesh, Quantity, faces_named};
 use tessgraph_graph::{EvalCx, Node, NodeError};
 use tessgraph_macros::{Choice, Inputs, Outputs};
 
@@ -26,9 +26,9 @@ pub(crate) struct SelectFaces {
     mesh: Arc<Mesh>,
     /// The rule.
     by: Rule,
-    /// The field, one number per face, or per vertex: then a face's mean counts.
+    /// A number, or one per face, or per vertex: then a face's mean counts.
     #[input(only_with(by = Field))]
-    field: Option<Arc<Field>>,
+    field: Option<Amount>,
     /// Faces with at least this value are chosen.
     #[input(default = 0.5, only_with(by = Field))]
     at_least: f64,
@@ -50,8 +50,9 @@ pub(crate) struct SelectFaces {
     /// Whether the others are chosen instead.
     #[input(default = false)]
     invert: bool,
-    /// Another choice, which this one is combined with after `invert`.
-    with: Option<Arc<Field>>,
+    /// Another choice, which this one is combined with after `invert`: 0.5 and more
+    /// for chosen, a number or one per face.
+    with: Option<Amount>,
     /// How the two are combined.
     #[input(default = And)]
     combine: Combine,
@@ -101,8 +102,8 @@ impl Node for SelectFaces {
         if let Some(with) = &self.with {
             with.check(&self.mesh, Domain::Face)
                 .map_err(|error| NodeError::from(error).at_input("with"))?;
-            for (chosen, &other) in chosen.iter_mut().zip(with.values().iter()) {
-                let other = other >= 0.5;
+            for (face, chosen) in chosen.iter_mut().enumerate() {
+                let other = with.at(face) >= 0.5;
                 *chosen = match self.combine {
                     Combine::And => *chosen && other,
                     Combine::Or => *chosen || other,
@@ -158,8 +159,8 @@ impl SelectFaces {
             NodeError::new("`by: Field` needs `field`: one number per face or vertex")
                 .at_input("by")
         })?;
-        field
-            .check(mesh, field.domain())
+        let field = field
+            .on(mesh, field.domain_or(Domain::Face))
             .map_err(|error| NodeError::from(error).at_input("field"))?;
         let values = field.values();
         let value = |face: usize| match field.domain() {

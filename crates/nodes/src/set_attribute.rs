@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use tessgraph_geometry::{Attribute, AttributeValues, Field, Mesh};
+use tessgraph_geometry::{Amount, Attribute, AttributeValues, Mesh};
 use tessgraph_graph::expr::Formula;
 use tessgraph_graph::{EvalCx, Node, NodeError};
 use tessgraph_macros::Inputs;
@@ -36,8 +36,9 @@ pub(crate) struct SetAttribute {
     /// The formula for the values; either this or `field`.
     #[input(free(x: length, y: length, z: length, u, v, index), attributes)]
     value: Option<Arc<Formula>>,
-    /// The field with the values; either this or `value`.
-    field: Option<Arc<Field>>,
+    /// The field with the values, or one number for all elements; either this or
+    /// `value`.
+    field: Option<Amount>,
 }
 
 impl Node for SetAttribute {
@@ -49,7 +50,12 @@ impl Node for SetAttribute {
                 let values = elements::evaluate(formula, &self.mesh, self.on, "value", cx)?;
                 (self.on.domain(), values.into())
             }
-            (None, Some(field)) => {
+            (None, Some(Amount::Constant(number))) => {
+                let domain = self.on.domain();
+                let values = vec![*number; self.mesh.element_count(domain)];
+                (domain, values.into())
+            }
+            (None, Some(Amount::Field(field))) => {
                 field.check(&self.mesh, field.domain())?;
                 (field.domain(), field.values().clone())
             }
