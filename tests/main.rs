@@ -20,6 +20,7 @@ mod require;
 mod roofs;
 mod several_components;
 mod smoothing;
+mod statuses;
 mod study;
 mod support;
 mod tidy;

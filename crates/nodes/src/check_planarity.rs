@@ -57,6 +57,10 @@ pub(crate) struct Flatness {
     /// Largest distance of a corner to the plane of the other three.
     #[output(unit = length)]
     fourth_corner: f64,
+    /// How far a component at height 0 lies off the surface at most: it follows the
+    /// bilinear patch of a quad, distances are measured to the quad's triangles.
+    #[output(unit = length)]
+    warp: f64,
     /// Faces above the limit; 0 if none is given.
     above: usize,
     /// The face with the largest distance by the chosen convention.
@@ -68,6 +72,7 @@ pub(crate) struct Flatness {
 
 impl Node for CheckPlanarity {
     type Output = Flatness;
+    const VERSION: u32 = 2;
 
     fn eval(self, cx: &EvalCx<'_>) -> Result<Self::Output, NodeError> {
         let faces = measure::planarity(&self.mesh, cx.monitor())?;
@@ -93,6 +98,7 @@ impl Node for CheckPlanarity {
             diagonals: largest.diagonals,
             diagonal_share: largest.diagonal_share,
             fourth_corner: largest.fourth_corner,
+            warp: largest.warp,
             above,
             worst_face,
             field: Arc::new(Field::new(Domain::Face, Quantity::Length, values)?),

@@ -2,9 +2,10 @@
 
 use std::sync::Arc;
 
-use tessgraph_geometry::measure::{self, ThicknessOptions};
+use tessgraph_geometry::measure::{self, Histogram, ThicknessOptions};
 use tessgraph_geometry::surface::Surface;
-use tessgraph_geometry::{Amount, Field, Mesh};
+use tessgraph_geometry::{Amount, Field, Mesh, Quantity};
+use tessgraph_graph::value::{Column, ColumnValues, Table};
 use tessgraph_graph::{EvalCx, Node, NodeError};
 use tessgraph_macros::{Inputs, Outputs};
 
@@ -40,6 +41,9 @@ pub(crate) struct MeasureThickness {
     /// Vertices this close to the base or closer are left out.
     #[input(min = 0, unit = length)]
     ignore_below: Option<f64>,
+    /// Into how many equal ranges the histogram cuts the distances.
+    #[input(default = 10, min = 1, max = 1000)]
+    bins: u32,
 }
 
 /// Distances to the base.
@@ -70,10 +74,14 @@ pub(crate) struct Thickness {
     /// The distance of every vertex.
     #[output(unit = length)]
     distances: Arc<Field>,
+    /// How many vertices lie in each of equal ranges from the smallest to the largest
+    /// distance: columns `from`, `to` and `vertices`.
+    histogram: Arc<Table>,
 }
 
 impl Node for MeasureThickness {
     type Output = Thickness;
+    const VERSION: u32 = 2;
 
     fn eval(self, cx: &EvalCx<'_>) -> Result<Self::Output, NodeError> {
         let base = Surface::new(&self.base, cx.monitor())
@@ -82,7 +90,7 @@ impl Node for MeasureThickness {
             wanted: self.thickness.as_ref(),
             border: self.border.into(),
             ignore_below: self.ignore_below.unwrap_or(-1.0),
-            ..ThicknessOptions::default()
+            bins: self.bins as usize,
         };
         let found = measure::measure_thickness(&self.mesh, &base, &options, cx.monitor())?;
         Ok(Thickness {
@@ -94,7 +102,33 @@ impl Node for MeasureThickness {
             rms_error: found.rms_error,
             max_error: found.max_error,
             at_rim: found.at_rim,
+            histogram: Arc::new(table(&found.histogram)?),
             distances: Arc::new(found.field),
         })
     }
+}
+
+/// A row for each range.
+fn table(histogram: &Histogram) -> Result<Table, NodeError> {
+    let count = histogram.counts.len();
+    let column = |name: &str, quantity, values| Column {
+        name: name.to_owned(),
+        quantity,
+        values,
+    };
+    let edges = |first: usize| {
+        let edges = (first..first + count).map(|k| histogram.edge(k));
+        ColumnValues::Number(edges.collect())
+    };
+    let counts = histogram.counts.iter().map(|&count| count.cast_signed());
+    Table::new(vec![
+        column("from", Quantity::Length, edges(0)),
+        column("to", Quantity::Length, edges(1)),
+        column(
+            "vertices",
+            Quantity::Number,
+            ColumnValues::Integer(counts.collect()),
+        ),
+    ])
+    .ok_or_else(|| NodeError::new("the columns of the histogram differ in length"))
 }

@@ -19,6 +19,9 @@ pub struct Planarity {
     /// Distance of a corner to the plane of the other three, in metres; the
     /// largest of the four.
     pub fourth_corner: f64,
+    /// How far the bilinear patch of a quad lies from its two triangles, in metres:
+    /// the most that a component at height 0 is off the surface. 0 for other faces.
+    pub warp: f64,
 }
 
 impl Planarity {
@@ -29,6 +32,7 @@ impl Planarity {
             diagonals: self.diagonals.max(other.diagonals),
             diagonal_share: self.diagonal_share.max(other.diagonal_share),
             fourth_corner: self.fourth_corner.max(other.fourth_corner),
+            warp: self.warp.max(other.warp),
         }
     }
 
@@ -42,7 +46,10 @@ impl Planarity {
 ///
 /// Triangles are planar. Of faces with more than four corners, each four that
 /// follow one another are measured as a quad, and the largest counts; `plane`
-/// is that of all corners together. Cost: O(corners).
+/// is that of all corners together. The warp of a quad is half the distance
+/// between its diagonals: along their common normal patch and triangles differ by
+/// v (1 - u) |(p0 - p1 + p2 - p3) . n|, most in the middle, on either diagonal.
+/// Cost: O(corners).
 ///
 /// ```
 /// use tessgraph_geometry::{Mesh, Unmonitored, measure::planarity};
@@ -70,6 +77,7 @@ pub fn planarity(mesh: &Mesh, monitor: &dyn Monitor) -> Result<Vec<Planarity>, G
         let all = quads.fold(Planarity::default(), Planarity::max);
         Planarity {
             plane: to_best_plane(count, at),
+            warp: if count == 4 { all.diagonals / 2.0 } else { 0.0 },
             ..all
         }
     })
@@ -93,6 +101,7 @@ fn of_quad(at: [DVec3; 4]) -> Planarity {
     };
     Planarity {
         plane: 0.0,
+        warp: 0.0,
         diagonals,
         diagonal_share: if mean > 0.0 { diagonals / mean } else { 0.0 },
         fourth_corner: (0..4).map(corner).fold(0.0, f64::max),
@@ -155,6 +164,8 @@ mod tests {
         ]);
         assert!((found.plane - h).abs() < 1e-15);
         assert!((found.diagonals - 2.0 * h).abs() < 1e-15);
+        // The patch passes through 0 in the middle, each diagonal h from it.
+        assert!((found.warp - h).abs() < 1e-15);
         assert!((found.diagonal_share - 2.0 * h / 8f64.sqrt()).abs() < 1e-15);
         // Three corners span z = h + ... with slope 2h over half a diagonal each way.
         let expected = 4.0 * h / (1.0 + 2.0 * h * h).sqrt();
@@ -162,6 +173,37 @@ mod tests {
             (found.fourth_corner - expected).abs() < 1e-3 * expected,
             "{found:?}"
         );
+    }
+
+    #[test]
+    fn the_warp_is_the_gap_between_patch_and_triangles() {
+        let at = [
+            DVec3::new(0.2, -0.1, 0.3),
+            DVec3::new(2.1, 0.3, -0.2),
+            DVec3::new(1.7, 1.9, 0.9),
+            DVec3::new(-0.3, 1.2, 0.1),
+        ];
+        let found = of(&at.map(|p| p.to_array()));
+        let normal = (at[2] - at[0]).cross(at[3] - at[1]).normalize();
+        // Over a fine grid, along that normal, for both ways to split the quad.
+        let gap = |u: f64, v: f64| {
+            let patch = at[0].lerp(at[1], u).lerp(at[3].lerp(at[2], u), v);
+            let one = match u >= v {
+                true => at[0] + (at[1] - at[0]) * u + (at[2] - at[1]) * v,
+                false => at[0] + (at[3] - at[0]) * v + (at[2] - at[3]) * u,
+            };
+            let other = match u + v <= 1.0 {
+                true => at[0] + (at[1] - at[0]) * u + (at[3] - at[0]) * v,
+                false => at[2] + (at[3] - at[2]) * (1.0 - u) + (at[1] - at[2]) * (1.0 - v),
+            };
+            [one, other].map(|flat| (patch - flat).dot(normal).abs())
+        };
+        let grid = (0..=40).flat_map(|i| (0..=40).map(move |j| (i, j)));
+        let gaps = grid.map(|(i, j)| gap(f64::from(i) / 40.0, f64::from(j) / 40.0));
+        let most = gaps.fold([0.0f64; 2], |most, gap| [0, 1].map(|k| most[k].max(gap[k])));
+        for most in most {
+            assert!((most - found.warp).abs() < 1e-14, "{most} {}", found.warp);
+        }
     }
 
     #[test]

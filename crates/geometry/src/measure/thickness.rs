@@ -223,6 +223,15 @@ impl Sums {
 }
 
 impl Histogram {
+    /// Where range `k` begins and the one before it ends.
+    pub fn edge(&self, k: usize) -> f64 {
+        let count = self.counts.len();
+        if k >= count {
+            return self.high;
+        }
+        self.low + (self.high - self.low) * (k as f64 / count as f64)
+    }
+
     fn of(values: impl Iterator<Item = f64>, low: f64, high: f64, bins: usize) -> Self {
         let mut counts = vec![0; bins];
         let scale = if high > low {
