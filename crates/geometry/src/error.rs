@@ -179,7 +179,11 @@ pub enum GeometryError {
         vertices: Vec<u32>,
     },
     /// Vertices whose direction points against the surface normal.
-    #[error("the direction of {} against the surface normal", name_vertices(.vertices, "points", "point"))]
+    #[error(
+        "the {} of {} against the surface normal",
+        if .vertices.len() == 1 { "direction" } else { "directions" },
+        name_vertices(.vertices, "points", "point")
+    )]
     OpposedDirection {
         /// The vertices, ascending.
         vertices: Vec<u32>,

@@ -54,10 +54,12 @@ pub(crate) struct SmoothNormals {
     /// Which neighbours count, and how much.
     #[input(default = Uniform, only_with(scheme = Mean))]
     laplacian: LaplacianChoice,
-    /// Prefers neighbours along u (-1) or v (1) of a UV layer; 0 prefers none.
+    /// Prefers neighbours along u (-1) or v (1) of a UV layer; 0 prefers none. It weighs
+    /// mesh edges: with `scheme: Mean` and `laplacian: Uniform`, or `EdgeSum`, only.
     #[input(default = 0.0, min = -1, max = 1)]
     anisotropy: f64,
-    /// UV layer that says where u and v run.
+    /// UV layer that says where u and v run; `uv` is the name that files and the nodes
+    /// that make meshes give theirs.
     #[input(default = "uv")]
     layer: String,
     /// Directions that say where u runs, instead of a UV layer.
@@ -117,6 +119,7 @@ impl Node for SmoothNormals {
             Some(directions) => Arc::clone(directions),
             None => vertex_normals(&self.mesh, cx)?,
         };
+        self.check_anisotropy()?;
         if self.scheme == SchemeChoice::EdgeSum {
             self.warn_of_divergence(cx);
         }
@@ -159,6 +162,25 @@ impl SmoothNormals {
                 distance: self.distance,
             },
         }
+    }
+
+    /// Refuses a preference among edges where no edges are weighed.
+    fn check_anisotropy(&self) -> Result<(), NodeError> {
+        let over_edges = match (self.scheme, self.laplacian) {
+            (SchemeChoice::EdgeSum, _) | (SchemeChoice::Mean, LaplacianChoice::Uniform) => true,
+            (SchemeChoice::Mean, LaplacianChoice::Cotangent) | (SchemeChoice::Implicit, _) => false,
+        };
+        if over_edges || self.anisotropy == 0.0 {
+            return Ok(());
+        }
+        let what = match self.scheme {
+            SchemeChoice::Implicit => "`scheme: Implicit`",
+            _ => "`laplacian: Cotangent`",
+        };
+        let message = format!("{what} takes no anisotropy: it has weights of its own");
+        Err(NodeError::new(message)
+            .with_help("use `scheme: Mean` with `laplacian: Uniform`, or leave `anisotropy` out")
+            .at_input("anisotropy"))
     }
 
     fn preference(&self) -> Option<Anisotropy<'_>> {

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use tessgraph_geometry::target::{self, TargetLength, ZeroPairs};
-use tessgraph_geometry::{Directions, Mesh};
+use tessgraph_geometry::{Directions, GeometryError, Mesh};
 use tessgraph_graph::{EvalCx, Node, NodeError};
 use tessgraph_macros::{Choice, Inputs};
 
@@ -56,7 +56,20 @@ impl Node for TargetDirections {
         };
         let (length, monitor) = (self.length.into(), cx.monitor());
         let directions = target::target_directions(&self.mesh, &self.target, length, zero, monitor)
-            .map_err(|error| NodeError::from(error).at_input("target"))?;
+            .map_err(|error| fault(error).at_input("target"))?;
         Ok(Arc::new(directions))
+    }
+}
+
+fn fault(error: GeometryError) -> NodeError {
+    let coincides = matches!(error, GeometryError::ZeroDirection { .. });
+    let fault = NodeError::from(error);
+    if coincides {
+        fault.with_help(
+            "move these vertices of the target off the base, or take the surface normal there \
+             with `zero_as_normal: true`",
+        )
+    } else {
+        fault
     }
 }
