@@ -39,7 +39,13 @@ impl fmt::Display for Verdict {
                  and a face without area",
             ),
             Self::Beaten(why) => write!(f, "beaten: {why}"),
-            Self::Refused(keys) => write!(f, "refused: {}", keys.join(", ")),
+            Self::Refused(keys) => {
+                let told = keys.iter().map(|key| match settings::reason(key) {
+                    Some(reason) => format!("{key} ({reason})"),
+                    None => key.clone(),
+                });
+                write!(f, "refused: {}", told.collect::<Vec<_>>().join(", "))
+            }
             Self::Differs(how) => write!(f, "DIFFERS: {how}"),
         }
     }

@@ -97,7 +97,10 @@ fn way(vertex: usize) -> DVec3 {
 /// One pass of n + 0.2 w sum (n_j - n) over the roof's edges.
 fn smoothed(weight: impl Fn(usize) -> f64) -> Vec<DVec3> {
     let beside = |v: usize| {
-        let along = [(v != 0 && v != 4).then(|| v - 1), (v % 4 < 3).then_some(v + 1)];
+        let along = [
+            (v != 0 && v != 4).then(|| v - 1),
+            (v % 4 < 3).then_some(v + 1),
+        ];
         along.into_iter().flatten().chain([(v + 4) % 8])
     };
     let pass = |v: usize| {

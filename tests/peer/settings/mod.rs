@@ -158,3 +158,11 @@ pub(super) fn graph(settings: &str, holds: &Holds) -> Request {
     let document: Value = serde_json::from_str(settings).expect("settings are JSON");
     passes::graph(&document, holds)
 }
+
+/// Why a key is refused.
+pub(super) fn reason(key: &str) -> Option<&'static str> {
+    let mut table = keys::WITHOUT_COUNTERPART.iter();
+    table
+        .find(|(name, _)| *name == key)
+        .map(|(_, reason)| *reason)
+}
