@@ -119,7 +119,13 @@ export class App {
     });
     const { viewer } = this.stage;
     if (viewer) viewer.onPicture = (times) => this.finishPicture(times);
-    if (this.pick) this.pick.onMeasuring = (measuring) => this.viewbar.press("measure", measuring);
+    const { pick } = this;
+    if (!pick) return;
+    pick.onMeasuring = (measuring) => this.viewbar.press("measure", measuring);
+    pick.onPanels = () => {
+      this.look.change({ panels: pick.panels.state() });
+      if (pick.panels.hidesSome) this.banner.say("info", "Some panels are hidden: Shift H shows all.");
+    };
   }
 
   /** The first hello brings back how this graph was looked at; a later one only a new session. */
@@ -137,6 +143,7 @@ export class App {
       this.colours.wanted = view.field;
       this.colours.locked = view.locked;
     }
+    this.pick?.restorePanels(view.panels);
     this.drawer.open(view.tab, view.drawer);
   }
 
@@ -162,8 +169,10 @@ export class App {
     }
     this.restoreShown = false;
     if (before?.node !== shown.node || before.result !== shown.result) {
+      // Other results have other panels; the first picture is of those kept.
+      if (before) this.pick?.restorePanels(undefined);
       this.pick?.clear();
-      this.look.change({ node: { node: shown.node, result: shown.result } });
+      this.look.change({ panels: this.pick?.panels.state(), node: { node: shown.node, result: shown.result } });
     }
     this.stage.describe(shown);
     if (!shown.mesh && !shown.empty && (shown.table || shown.report)) this.drawer.open("table");
@@ -192,7 +201,6 @@ export class App {
     this.stage.viewer?.whenDrawn(() => {
       const now = performance.now();
       performance.clearMeasures("repaint");
-      performance.clearMarks();
       const detail = { ...times, draw: now - uploaded, version: shown?.version };
       performance.measure("repaint", { start: arrived, end: now, detail });
       this.stage.root.dataset["version"] = String(shown?.version ?? "");
@@ -242,6 +250,9 @@ export class App {
     lock_range: () => this.lock(!this.colours?.locked),
     section: () => this.look.nextSection(),
     section_flip: () => this.look.flipSection(),
+    hide: () => this.pick?.hide(),
+    isolate: () => this.pick?.isolate(),
+    show_all: () => this.pick?.showAll(),
     measure: () => this.pick?.toggleMeasure(),
     screenshot: () => void this.screenshot(),
     next_output: () => this.stepOutput(1),

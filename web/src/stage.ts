@@ -67,7 +67,7 @@ export class Stage {
     if (!viewer) return;
     this.gizmo.update(viewer.camera.camera);
     const scale = this.store.get("shown")?.mesh?.scale ?? 1;
-    this.scaleBar.update(viewer.camera.metresPerPixel(this.root.clientHeight), scale, lengthUnit(this.store.get("document")));
+    this.scaleBar.update(viewer.camera.metresPerPixel(this.root.clientWidth), scale, lengthUnit(this.store.get("document")));
     setHidden(this.offScreen, !viewer.isOffScreen());
   }
 }

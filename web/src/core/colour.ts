@@ -8,12 +8,13 @@ export type Rgb = [number, number, number];
 /** OKLab lightness, chroma and hue in degrees. */
 type Lch = [number, number, number];
 
-export type MapName = "sequential" | "blue_yellow" | "diverging";
+export type MapName = "sequential" | "blue_yellow" | "diverging" | "alarm";
 
 export const MAP_LABELS: Record<MapName, string> = {
   sequential: "Dark to light",
   blue_yellow: "Blue to yellow",
   diverging: "Below and above zero",
+  alarm: "None to many",
 };
 
 const ANCHORS: Record<MapName, Lch[]> = {
@@ -40,7 +41,17 @@ const ANCHORS: Record<MapName, Lch[]> = {
     [0.7, 0.13, 55],
     [0.42, 0.13, 38],
   ],
+  // Yellow to dark red for what must not be; what is not there stays plain.
+  alarm: [
+    [0.87, 0.15, 95],
+    [0.72, 0.17, 60],
+    [0.55, 0.19, 33],
+    [0.36, 0.14, 25],
+  ],
 };
+
+/** The colour of nothing in the map "None to many": that of an uncoloured model. */
+const NONE: Rgb = [0.86, 0.87, 0.88];
 
 /** Eight colours for classes: those of Okabe and Ito (2008), told apart by all. */
 export const CLASSES: Rgb[] = [
@@ -93,6 +104,7 @@ export function decode(srgb: Rgb): Rgb {
 
 /** The colour of `t` in [0, 1], sRGB. */
 export function colourAt(map: MapName, t: number): Rgb {
+  if (map === "alarm" && t < 0.5 / 255) return NONE;
   const anchors = ANCHORS[map];
   const place = Math.min(1, Math.max(0, t)) * (anchors.length - 1);
   const index = Math.min(anchors.length - 2, Math.floor(place));

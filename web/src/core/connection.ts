@@ -24,7 +24,6 @@ export function connect(store: Store, address: URL): void {
       store.setLink("open");
     });
     socket.addEventListener("message", (event) => {
-      performance.mark("message");
       store.receive(JSON.parse(String(event.data)) as FromServer);
     });
     socket.addEventListener("close", () => {

@@ -6,8 +6,17 @@ export type ColourRange = { min: number; max: number };
 /** What is known of a field without its values. */
 export type FieldRange = { min: number; max: number; categorical: boolean };
 
-/** The map that suits a field: a diverging one where values lie on both sides of zero. */
-export function suitableMap(field: FieldRange): MapName {
+/**
+ * The map that suits a field: a diverging one where values lie on both sides of
+ * zero; where most are exactly zero, such as counts of crossings, one that leaves
+ * those plain.
+ */
+export function suitableMap(field: FieldRange, values?: Float32Array): MapName {
+  if (field.min === 0 && values) {
+    let zeros = 0;
+    for (const value of values) if (value === 0) zeros += 1;
+    if (2 * zeros > values.length) return "alarm";
+  }
   return field.min < 0 && field.max > 0 ? "diverging" : "sequential";
 }
 
@@ -18,9 +27,8 @@ export function fullRange(field: FieldRange, map: MapName): ColourRange {
     const size = Math.max(Math.abs(field.min), Math.abs(field.max)) || 1;
     return { min: -size, max: size };
   }
-  if (field.max > field.min) return { min: field.min, max: field.max };
-  const pad = Math.abs(field.min) * 1e-6 || 1e-6;
-  return { min: field.min - pad, max: field.max + pad };
+  // One value everywhere is at the low end of a range it can be compared in.
+  return { min: field.min, max: field.max > field.min ? field.max : field.min + (Math.abs(field.min) || 1) };
 }
 
 /** The ranges of each field by name; a locked one stays while the model changes. */

@@ -1,5 +1,6 @@
 // What the person chose about looking: kept across reloads and restarts. The model
 // is never part of it, and neither is anything that changes a result.
+import type { PanelsState } from "../tools/panels.ts";
 import type { Section } from "../view/viewer.ts";
 import type { CameraState, Profile } from "../view/camera.ts";
 import type { EdgeMode } from "../view/surface.ts";
@@ -25,6 +26,7 @@ export type ViewState = {
   map?: MapName | undefined;
   locked: boolean;
   section?: Section | undefined;
+  panels?: PanelsState | undefined;
   drawer: DrawerSize;
   tab: DrawerTab;
   node?: { node: string; result: string } | undefined;

@@ -11,18 +11,24 @@ export type Chip = {
   act?: "cancel" | "messages" | "run";
 };
 
+/** How long a run takes by now, and how long the last one took, in milliseconds. */
+export type Clocked = { elapsed: number; last?: number | undefined };
+
+/** A run that is shorter than this is not timed in the chip: numbers would only flicker. */
+const SHORT_MS = 500;
+
 /** The chip for what is known; the connection says more than the last run. */
-export function chipOf(link: Link, hello: Hello | undefined, status: Status | undefined, diagnostics: Diagnostics | undefined): Chip {
+export function chipOf(link: Link, hello: Hello | undefined, status: Status | undefined, diagnostics: Diagnostics | undefined, clocked?: Clocked): Chip {
   if (link === "refused") {
     return { sign: "⊘", text: "Server restarted with a new address: open the one it printed", kind: "bad" };
   }
   if (link === "retrying") return { sign: "⊘", text: "Disconnected: retrying", kind: "bad" };
   if (link === "connecting" || !status) return { sign: "◌", text: "Connecting", kind: "idle" };
-  const chip = chipOfStatus(status, diagnostics);
+  const chip = chipOfStatus(status, diagnostics, clocked);
   return hello?.read_only ? { ...chip, text: `${chip.text} · read only` } : chip;
 }
 
-function chipOfStatus(status: Status, diagnostics: Diagnostics | undefined): Chip {
+function chipOfStatus(status: Status, diagnostics: Diagnostics | undefined, clocked: Clocked | undefined): Chip {
   const cause = status.cause ? ` · ${status.cause}` : "";
   switch (status.state) {
     case "up_to_date":
@@ -30,7 +36,7 @@ function chipOfStatus(status: Status, diagnostics: Diagnostics | undefined): Chi
     case "computing": {
       const place = status.total ? ` ${status.done ?? 0}/${status.total}` : "";
       const part = status.fraction === undefined ? "" : ` ${Math.round(100 * status.fraction)} %`;
-      return { sign: "↻", text: `Computing${place}${status.node ? ` ${status.node}` : ""}${part}`, kind: "busy", act: "cancel" };
+      return { sign: "↻", text: `Computing${place}${status.node ? ` ${status.node}` : ""}${part}${timeOf(clocked)}`, kind: "busy", act: "cancel" };
     }
     case "stale": {
       const errors = status.errors ?? diagnostics?.items.filter((d) => d.severity === "error").length ?? 0;
@@ -42,4 +48,11 @@ function chipOfStatus(status: Status, diagnostics: Diagnostics | undefined): Chi
     case "cancelled":
       return { sign: "■", text: `Stopped${cause}`, kind: "waiting", act: "run" };
   }
+}
+
+function timeOf(clocked: Clocked | undefined): string {
+  if (!clocked || clocked.elapsed < SHORT_MS) return "";
+  const { elapsed, last } = clocked;
+  const of = last !== undefined && last > SHORT_MS ? ` of ~${formatTime(last)}` : "";
+  return ` · ${(elapsed / 1000).toFixed(1)} s${of}`;
 }

@@ -72,10 +72,11 @@ export class DetailsPanel {
   }
 
   private results(node: GraphNode, summaries: { name: string; summary: string }[]): HTMLElement {
-    const rows = node.results.map(({ name, kind, main }) => {
+    const rows = node.results.flatMap(({ name, kind, main }) => {
       const summary = summaries.find((s) => s.name === name)?.summary ?? "";
       const link = button(main ? `${name} (main)` : name, `Show ${node.name}.${name}`, () => this.events.show(node.name, name), { class: "link" });
-      return element("tr", {}, element("th", { scope: "row" }, link), element("td", {}, kind, summary ? `: ${summary}` : ""));
+      const row = element("tr", {}, element("th", { scope: "row" }, link), element("td", {}, kind));
+      return summary ? [row, element("tr", {}, element("td", { class: "summary", colspan: 2 }, summary))] : [row];
     });
     return element("table", { class: "results" }, element("caption", {}, "Gives"), ...rows);
   }

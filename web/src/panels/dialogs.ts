@@ -121,6 +121,8 @@ export class Readout {
 
   show(title: string, lines: [string, string][]): void {
     setText(this.title, title);
+    // Many lines stand in two columns: the model is not to be covered.
+    this.list.classList.toggle("wide", lines.length > 7);
     this.list.replaceChildren(...lines.flatMap(([label, value]) => [element("dt", {}, label), element("dd", {}, value)]));
     this.root.hidden = false;
   }

@@ -18,17 +18,19 @@ export class StudyPanel {
   private readonly axesPicture = svg("svg", { class: "axes" });
   private readonly readout = element("p", { class: "hint" });
   private readonly hint = element("p", { class: "hint" }, "No study of this graph has results yet: `tessgraph study` makes them.");
+  private readonly clear: HTMLButtonElement;
   private study: Study | undefined;
   private axes: StudyAxis[] = [];
   private brushes = new Map<number, [number, number]>();
   private hovered: number | undefined;
 
   constructor(store: Store) {
-    const clear = button("all variants", "Take the limits off all axes", () => {
+    this.clear = button("all variants", "Take the limits off all axes", () => {
       this.brushes.clear();
       this.draw();
     }, { class: "link" });
-    this.root.append(element("div", { class: "study-head" }, this.readout, clear, this.hint), this.canvas, this.axesPicture);
+    this.root.append(element("div", { class: "study-head" }, this.readout, this.clear, this.hint), this.canvas, this.axesPicture);
+    this.clear.hidden = true;
     store.on("study", (study) => this.take(study));
     new ResizeObserver(() => this.draw()).observe(this.root);
     this.axesPicture.addEventListener("pointermove", (event) => this.hover(event));
@@ -40,6 +42,7 @@ export class StudyPanel {
     this.axes = studyAxes(study.columns, study.rows, (n) => formatNumber(n, 4));
     this.brushes.clear();
     this.hint.hidden = true;
+    this.clear.hidden = false;
     this.onStudy();
     this.draw();
   }

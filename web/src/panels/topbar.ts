@@ -1,7 +1,7 @@
 // The top bar: which file, in what state, what is shown and by what it is coloured.
 import { button, element, setText } from "../core/dom.ts";
 import { type Action, tooltip } from "../core/keys.ts";
-import type { Document, Shown } from "../core/protocol.ts";
+import type { Document, Shown, Status } from "../core/protocol.ts";
 import type { Store } from "../core/store.ts";
 import { formatCount } from "../core/units.ts";
 import { chipOf } from "./chip.ts";
@@ -24,6 +24,9 @@ export class Topbar {
   private readonly counts = element("span", { class: "counts" });
   private readonly colours = element("select", { "aria-label": "Colour by", title: tooltip("colour") });
   private chipAct: (() => void) | undefined;
+  private started: number | undefined;
+  private lastMs: number | undefined;
+  private timer: ReturnType<typeof setInterval> | undefined;
 
   constructor(
     private readonly store: Store,
@@ -54,7 +57,11 @@ export class Topbar {
       this.file.title = `${folder}/${file}`;
       document.title = `${file} · tessgraph`;
     });
-    for (const type of ["hello", "status", "diagnostics"] as const) store.on(type, () => this.updateChip());
+    for (const type of ["hello", "diagnostics"] as const) store.on(type, () => this.updateChip());
+    store.on("status", (status) => {
+      this.clock(status);
+      this.updateChip();
+    });
     store.onLink(() => this.updateChip());
     store.on("document", () => this.updateOutputs());
     store.on("shown", (shown) => {
@@ -63,9 +70,23 @@ export class Topbar {
     });
   }
 
+  /** Times a run that is under way. */
+  private clock(status: Status): void {
+    if (status.state === "computing") {
+      this.started ??= performance.now();
+      this.timer ??= setInterval(() => this.updateChip(), 200);
+      return;
+    }
+    if (status.ms !== undefined) this.lastMs = status.ms;
+    clearInterval(this.timer);
+    this.timer = undefined;
+    this.started = undefined;
+  }
+
   private updateChip(): void {
     const { store } = this;
-    const chip = chipOf(store.link, store.get("hello"), store.get("status"), store.get("diagnostics"));
+    const clocked = this.started === undefined ? undefined : { elapsed: performance.now() - this.started, last: this.lastMs };
+    const chip = chipOf(store.link, store.get("hello"), store.get("status"), store.get("diagnostics"), clocked);
     this.chip.className = `chip ${chip.kind}`;
     setText(this.chipSign, chip.sign);
     setText(this.chipText, chip.text);

@@ -69,15 +69,19 @@ export class ColourTool {
       return;
     }
     const name = nameOf(field);
-    const map = this.mapOf(field);
+    const values = this.values?.digest === field.values ? this.values.values : undefined;
+    const map = this.mapOf(field, values);
     const range = this.ranges.rangeOf(name, field, map);
     this.viewer.setColours(map, range);
-    const values = this.values?.digest === field.values ? this.values.values : undefined;
     this.legend().show(field, values, map, range, this.ranges.locked);
   }
 
-  private mapOf(field: ShownField): MapName {
-    return this.chosenMaps.get(nameOf(field)) ?? suitableMap(field);
+  /** The map chosen by hand, else the one that suited the field when it was first seen. */
+  private mapOf(field: ShownField, values: Float32Array | undefined): MapName {
+    const name = nameOf(field);
+    const map = this.chosenMaps.get(name) ?? suitableMap(field, values);
+    this.chosenMaps.set(name, map);
+    return map;
   }
 
   hold(range: ColourRange): boolean {
@@ -99,6 +103,7 @@ export class ColourTool {
     const { field } = this;
     if (!field) return;
     this.ranges.release(nameOf(field));
+    this.chosenMaps.delete(nameOf(field));
     this.apply();
   }
 }

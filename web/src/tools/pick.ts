@@ -4,18 +4,23 @@ import type { Place, Vec3 } from "../core/protocol.ts";
 import type { Store } from "../core/store.ts";
 import { formatCount } from "../core/units.ts";
 import type { Readout } from "../panels/dialogs.ts";
+import { nextPick, type Picked } from "./picking.ts";
+import { Panels, type PanelsState } from "./panels.ts";
 import type { Hit, Viewer } from "../view/viewer.ts";
 
 /** A press that moves further than this many pixels is a drag. */
 const CLICK_PIXELS = 4;
 
 export class PickTool {
+  readonly panels = new Panels();
   private request = 0;
-  private selected: { face: number; vertex?: number } | undefined;
+  private picked: Picked | undefined;
   private outline: Vec3[] = [];
   private from: Place | undefined;
   measuring = false;
   onMeasuring: (measuring: boolean) => void = () => {};
+  /** Called when panels were hidden, isolated or shown. */
+  onPanels: () => void = () => {};
 
   constructor(
     private readonly store: Store,
@@ -24,12 +29,13 @@ export class PickTool {
   ) {
     this.listen();
     store.on("picked", (picked) => {
-      if (picked.request !== this.request || this.measuring) return;
+      if (picked.request !== this.request || this.measuring || !this.picked) return;
+      const { level, panel } = this.picked;
       this.outline = picked.vertices ?? [];
-      viewer.marks.setOutline(this.outline.map((point) => viewer.toScene(point)));
+      viewer.marks.setOutline(level === "panel" ? [] : this.outline.map((point) => viewer.toScene(point)));
       viewer.invalidate();
-      const name = picked.vertex !== undefined ? `Vertex ${formatCount(picked.vertex)}` : `Face ${formatCount(picked.face ?? 0)}`;
-      this.readout.show(name, picked.lines);
+      const names = { panel: `Panel ${formatCount(panel)}`, face: `Face ${formatCount(picked.face ?? 0)}`, vertex: `Vertex ${formatCount(picked.vertex ?? 0)}` };
+      this.readout.show(names[level], picked.lines);
     });
     store.on("measured", (measured) => {
       if (measured.request !== this.request) return;
@@ -49,11 +55,11 @@ export class PickTool {
     canvas.addEventListener("pointerup", (event) => {
       if (!pressed || Math.hypot(event.clientX - pressed.x, event.clientY - pressed.y) > CLICK_PIXELS) return;
       const box = canvas.getBoundingClientRect();
-      this.click(this.viewer.hit(event.clientX - box.left, event.clientY - box.top));
+      this.click(this.viewer.hit(event.clientX - box.left, event.clientY - box.top), event.shiftKey);
     });
   }
 
-  private click(hit: Hit | undefined): void {
+  private click(hit: Hit | undefined, adding: boolean): void {
     if (this.measuring) {
       if (hit) this.measureAt(hit);
       return;
@@ -62,13 +68,50 @@ export class PickTool {
       this.clear();
       return;
     }
-    // A second click on the face asks for the vertex that is nearest there.
-    const again = this.selected?.face === hit.face;
-    this.selected = again && this.selected?.vertex !== hit.vertex ? { face: hit.face, vertex: hit.vertex } : { face: hit.face };
-    this.viewer.setPicked(hit.face);
+    const hasPanels = this.store.get("shown")?.mesh?.base_faces !== undefined;
+    this.picked = nextPick(adding ? undefined : this.picked, hit, hasPanels);
+    this.panels.select(hit.panel, adding);
+    this.viewer.setPicked(this.picked.level === "panel" ? undefined : hit.face);
+    this.drawPanels();
+    this.ask();
+  }
+
+  /** Asks the server about what is picked. */
+  private ask(): void {
+    if (!this.picked) return;
     this.request += 1;
-    const vertex = this.selected.vertex;
-    this.store.send({ type: "pick", request: this.request, ...(vertex === undefined ? { face: hit.face } : { vertex }) });
+    const { face, vertex, level } = this.picked;
+    this.store.send({ type: "pick", request: this.request, ...(level === "vertex" ? { vertex } : { face }) });
+  }
+
+  private drawPanels(): void {
+    this.viewer.setPanels(this.panels.states(), this.panels.isIsolating);
+  }
+
+  hide(): void {
+    if (this.panels.hide() > 0) this.clear();
+    this.changePanels();
+  }
+
+  isolate(): void {
+    this.panels.isolate();
+    this.changePanels();
+  }
+
+  showAll(): void {
+    this.panels.showAll();
+    this.changePanels();
+  }
+
+  private changePanels(): void {
+    this.drawPanels();
+    this.onPanels();
+  }
+
+  /** Brings back what was hidden on an earlier page. */
+  restorePanels(state: PanelsState | undefined): void {
+    this.panels.restore(state);
+    this.drawPanels();
   }
 
   private measureAt(hit: Hit): void {
@@ -97,19 +140,20 @@ export class PickTool {
       this.toggleMeasure();
       return true;
     }
-    const had = this.selected !== undefined;
+    const had = this.picked !== undefined;
     this.clear();
     return had;
   }
 
-  /** Face and vertex ids mean nothing on another mesh. */
+  /** Lets the pick go. */
   clear(): void {
-    this.selected = undefined;
+    this.picked = undefined;
     this.outline = [];
+    this.panels.selected.clear();
     this.viewer.setPicked(undefined);
     this.viewer.marks.setOutline([]);
     this.viewer.marks.setLine([]);
-    this.viewer.invalidate();
+    this.drawPanels();
     this.readout.hide();
   }
 
@@ -120,13 +164,8 @@ export class PickTool {
 
   /** Asks again for the same ids after the model changed, as long as they exist. */
   refresh(faces: number): void {
-    if (!this.selected || this.measuring) return;
-    if (this.selected.face >= faces) {
-      this.clear();
-      return;
-    }
-    this.request += 1;
-    const { face, vertex } = this.selected;
-    this.store.send({ type: "pick", request: this.request, ...(vertex === undefined ? { face } : { vertex }) });
+    if (!this.picked || this.measuring) return;
+    if (this.picked.face >= faces) this.clear();
+    else this.ask();
   }
 }

@@ -4,7 +4,7 @@
 import CameraControls from "camera-controls";
 import * as THREE from "three";
 import type { Vec3 } from "../core/protocol.ts";
-import { boxCorners, fitDistance } from "./fit.ts";
+import { fitPoints } from "./fit.ts";
 
 CameraControls.install({ THREE });
 
@@ -29,14 +29,21 @@ const VIEWS: Record<StandardView, [number, number]> = {
   corner: [Math.PI / 5, Math.PI / 2.9],
 };
 
-const FIELD_OF_VIEW = 35;
+/**
+ * Half the picture's width as a tangent. The width is what is fixed, not the
+ * height: when the drawer opens, the model stays as large as it was.
+ */
+const TANGENT = Math.tan((26 * Math.PI) / 180);
+
+/** How much larger the view is than what is fitted into it. */
+const FIT_ROOM = 1.1;
 
 /** What is kept of a camera between pages: absolute metres. */
 export type CameraState = { position: Vec3; target: Vec3; offset: Vec3; zoom: number; orthographic: boolean };
 
 export class ViewCamera {
   readonly controls: CameraControls;
-  private readonly perspective = new THREE.PerspectiveCamera(FIELD_OF_VIEW, 1, 0.01, 1000);
+  private readonly perspective = new THREE.PerspectiveCamera(50, 1, 0.01, 1000);
   private readonly orthographic = new THREE.OrthographicCamera(-1, 1, 1, -1, -1000, 1000);
   private aspect = 1;
   private bounds = new THREE.Sphere(new THREE.Vector3(), 1);
@@ -72,8 +79,9 @@ export class ViewCamera {
   resize(width: number, height: number): void {
     this.aspect = width / Math.max(height, 1);
     this.perspective.aspect = this.aspect;
-    this.orthographic.left = -this.aspect;
-    this.orthographic.right = this.aspect;
+    this.perspective.fov = (360 / Math.PI) * Math.atan(TANGENT / this.aspect);
+    this.orthographic.top = 1 / this.aspect;
+    this.orthographic.bottom = -1 / this.aspect;
     this.camera.updateProjectionMatrix();
   }
 
@@ -92,25 +100,24 @@ export class ViewCamera {
     this.camera.updateProjectionMatrix();
   }
 
-  /** Moves along the present direction until the box fills the view. */
-  fit(box: THREE.Box3, animate = true): void {
-    if (box.isEmpty()) return;
-    const centre = box.getCenter(new THREE.Vector3());
-    const size = box.getSize(new THREE.Vector3());
-    if (size.length() < 1e-9) box = box.clone().expandByScalar(0.5);
-    const corners = boxCorners(box).map((corner) => corner.sub(centre));
+  /** Moves along the present direction until the points fill the view. */
+  fit(points: THREE.Vector3[], animate = true): void {
+    if (points.length === 0) return;
     this.controls.update(0);
     this.camera.updateMatrixWorld();
-    const [right, up, back] = [0, 1, 2].map((k) => new THREE.Vector3().setFromMatrixColumn(this.camera.matrixWorld, k)) as [THREE.Vector3, THREE.Vector3, THREE.Vector3];
-    const tangent = Math.tan((FIELD_OF_VIEW * Math.PI) / 360);
-    const room = 1.08;
-    const distance = Math.max(1e-3, fitDistance(corners, right, up, back, (tangent * this.aspect) / room, tangent / room));
+    const axis = (k: number): THREE.Vector3 => new THREE.Vector3().setFromMatrixColumn(this.camera.matrixWorld, k).normalize();
+    const tangentX = TANGENT / FIT_ROOM;
+    const lens = { right: axis(0), up: axis(1), back: axis(2), tangentX, tangentY: tangentX / this.aspect };
+    const fit = fitPoints(points, lens);
+    const { distance, extent } = fit;
+    const target = this.isOrthographic ? fit.middle : fit.target;
     const transition = animate && this.smooth();
+    // A single point has no size: come no nearer than a part of the model.
+    const least = 0.02 * this.bounds.radius;
     void this.controls.setFocalOffset(0, 0, 0, transition);
-    void this.controls.moveTo(centre.x, centre.y, centre.z, transition);
-    void this.controls.dollyTo(distance, transition);
-    const extent = Math.max(...corners.map((c) => Math.max(Math.abs(c.dot(right)) / this.aspect, Math.abs(c.dot(up)))));
-    void this.controls.zoomTo(this.isOrthographic ? 1 / (room * extent) : 1, transition);
+    void this.controls.moveTo(target.x, target.y, target.z, transition);
+    void this.controls.dollyTo(Math.max(distance, least), transition);
+    void this.controls.zoomTo(this.isOrthographic ? 1 / (FIT_ROOM * Math.max(extent, least)) : 1, transition);
   }
 
   look(view: StandardView): void {
@@ -121,27 +128,25 @@ export class ViewCamera {
 
   /** Changes the projection and keeps the size of what is at the target. */
   toggleProjection(): void {
-    const tangent = Math.tan((FIELD_OF_VIEW * Math.PI) / 360);
     if (this.isOrthographic) {
-      const distance = 1 / this.orthographic.zoom / tangent;
+      const distance = 1 / this.orthographic.zoom / TANGENT;
       this.controls.camera = this.perspective;
       void this.controls.zoomTo(1, false);
       void this.controls.dollyTo(distance, false);
     } else {
-      const height = this.controls.distance * tangent;
+      const halfWidth = this.controls.distance * TANGENT;
       this.controls.camera = this.orthographic;
-      void this.controls.zoomTo(1 / height, false);
+      void this.controls.zoomTo(1 / halfWidth, false);
     }
     this.controls.update(0);
     this.clip(this.bounds);
   }
 
-  /** Metres of one CSS pixel at the target. */
-  metresPerPixel(height: number): number {
-    if (this.isOrthographic) return 2 / this.orthographic.zoom / height;
-    const tangent = Math.tan((FIELD_OF_VIEW * Math.PI) / 360);
+  /** Metres of one CSS pixel: at the middle of the model, or everywhere if parallel. */
+  metresPerPixel(width: number): number {
+    if (this.isOrthographic) return 2 / this.orthographic.zoom / width;
     const distance = this.camera.position.distanceTo(this.bounds.center);
-    return (2 * distance * tangent) / height;
+    return (2 * distance * TANGENT) / width;
   }
 
   state(origin: Vec3): CameraState {

@@ -9,11 +9,30 @@ precision highp int;
 uniform highp sampler2D positions;
 uniform highp usampler2D triangles;
 uniform highp usampler2D triangleFaces;
+uniform highp usampler2D baseFaces;
+uniform bool hasPanels;
+uniform highp usampler2D panelStates;
+uniform int panelStateCount;
+uniform bool isolating;
 uniform mat4 modelMatrix;
 uniform mat4 viewMatrix;
 uniform mat4 projectionMatrix;
 
 ivec2 at(int index) { return ivec2(index & 4095, index >> 12); }
+
+// Whether any panel differs from the others: else their states are not looked up.
+bool hasStates() { return isolating || panelStateCount > 0; }
+
+// A panel is what came from one face of the base, or a face where there is no base.
+uint panelOf(uint face) { return hasPanels ? texelFetch(baseFaces, at(int(face)), 0).x : face; }
+
+// Bits of a panel: 1 hidden, 2 among the isolated, 4 selected.
+uint stateOf(uint panel) { return int(panel) < panelStateCount ? texelFetch(panelStates, at(int(panel)), 0).x : 0u; }
+
+bool isHidden(uint state) { return (state & 1u) != 0u || (isolating && (state & 2u) == 0u); }
+
+// Outside of what is drawn, all three corners of a triangle.
+const vec4 NOWHERE = vec4(2.0, 2.0, 2.0, 1.0);
 `;
 
 export const SURFACE_VERTEX = /* glsl */ `${PULL}
@@ -28,6 +47,7 @@ out float smoothValue;
 flat out float faceValue;
 flat out uint face;
 flat out uint sides;
+flat out uint selected;
 
 void main() {
   int triangle = gl_VertexID / 3;
@@ -36,6 +56,8 @@ void main() {
   int vertex = int(k == 0 ? ids.x : k == 1 ? ids.y : ids.z);
   face = texelFetch(triangleFaces, at(triangle), 0).x;
   sides = texelFetch(edges, at(triangle), 0).x;
+  uint state = hasStates() ? stateOf(panelOf(face)) : 0u;
+  selected = state & 4u;
   corner = vec3(k == 0, k == 1, k == 2);
   smoothValue = 0.0;
   faceValue = 0.0;
@@ -45,7 +67,7 @@ void main() {
   vec4 seen = viewMatrix * world;
   worldPosition = world.xyz;
   viewPosition = seen.xyz;
-  gl_Position = projectionMatrix * seen;
+  gl_Position = isHidden(state) ? NOWHERE : projectionMatrix * seen;
 }
 `;
 
@@ -59,6 +81,7 @@ in float smoothValue;
 flat in float faceValue;
 flat in uint face;
 flat in uint sides;
+flat in uint selected;
 
 uniform mat4 viewMatrix;
 uniform int valuesOn;
@@ -113,7 +136,13 @@ void main() {
   if (valuesOn == 1) base = coloured(smoothValue);
   if (valuesOn == 2) base = coloured(faceValue);
   bool picked = int(face) == pickedFace;
-  if (picked) base = mix(base, pickColour, 0.75);
+  if (picked || selected != 0u) {
+    // Stripes over colours that mean something, so that both are seen.
+    vec2 pixel = gl_FragCoord.xy / pixelRatio;
+    bool stripe = fract((pixel.x - pixel.y) / 8.0) < 0.5;
+    float share = picked ? 0.85 : 0.5;
+    base = mix(base, pickColour, valuesOn == 0 ? share : stripe ? 0.95 : picked ? 0.4 : 0.0);
+  }
   vec3 up = (viewMatrix * vec4(0.0, 0.0, 1.0, 0.0)).xyz;
   float key = max(dot(normal, normalize(vec3(-0.45, 0.6, 0.75))), 0.0);
   float sky = 0.5 + 0.5 * dot(normal, up);
@@ -128,30 +157,30 @@ void main() {
     lit = mix(edgeColour, base * 0.95, smoothstep(0.4, 1.4, stripe));
     edge *= 0.4;
   }
-  float alpha = ghost ? mix(picked ? 0.5 : 0.09, 0.55, edge) : 1.0;
+  float alpha = ghost ? mix(picked || selected != 0u ? 0.5 : 0.09, 0.55, edge) : 1.0;
   colour = vec4(mix(lit, edgeColour, ghost ? edge : edge * 0.85), alpha);
 }
 `;
 
-/** Ids under the pointer: triangle, face, nearest corner's vertex, depth. */
+/** Ids under the pointer: face + 1, panel, nearest corner's vertex, depth. */
 export const PICK_VERTEX = /* glsl */ `${PULL}
 out vec3 worldPosition;
 out vec3 corner;
-flat out uint triangleId;
 flat out uint face;
+flat out uint panel;
 flat out uvec3 ids;
 
 void main() {
   int triangle = gl_VertexID / 3;
   int k = gl_VertexID - 3 * triangle;
-  triangleId = uint(triangle);
   ids = texelFetch(triangles, at(triangle), 0).xyz;
   int vertex = int(k == 0 ? ids.x : k == 1 ? ids.y : ids.z);
   face = texelFetch(triangleFaces, at(triangle), 0).x;
+  panel = panelOf(face);
   corner = vec3(k == 0, k == 1, k == 2);
   vec4 world = modelMatrix * vec4(texelFetch(positions, at(vertex), 0).xyz, 1.0);
   worldPosition = world.xyz;
-  gl_Position = projectionMatrix * viewMatrix * world;
+  gl_Position = isHidden(stateOf(panel)) ? NOWHERE : projectionMatrix * viewMatrix * world;
 }
 `;
 
@@ -160,8 +189,8 @@ precision highp float;
 precision highp int;
 in vec3 worldPosition;
 in vec3 corner;
-flat in uint triangleId;
 flat in uint face;
+flat in uint panel;
 flat in uvec3 ids;
 uniform bool cut;
 uniform vec4 cutPlane;
@@ -170,7 +199,7 @@ out uvec4 id;
 void main() {
   if (cut && dot(vec4(worldPosition, 1.0), cutPlane) > 0.0) discard;
   uint nearest = corner.x >= corner.y && corner.x >= corner.z ? ids.x : corner.y >= corner.z ? ids.y : ids.z;
-  id = uvec4(triangleId + 1u, face, nearest, floatBitsToUint(gl_FragCoord.z));
+  id = uvec4(face + 1u, panel, nearest, floatBitsToUint(gl_FragCoord.z));
 }
 `;
 

@@ -10,6 +10,8 @@ import {
   Mesh,
   RawShaderMaterial,
   RedFormat,
+  RedIntegerFormat,
+  UnsignedByteType,
   FloatType,
   RGBAFormat,
   type IUniform,
@@ -20,7 +22,7 @@ import {
 import { CLASSES, type MapName, mapBytes } from "../core/colour.ts";
 import type { ColourRange } from "../core/legend.ts";
 import type { Shown, ShownField } from "../core/protocol.ts";
-import type { Buffers, Format } from "./buffers.ts";
+import { type Buffers, type Format, ROW } from "./buffers.ts";
 import {
   ARROW_FRAGMENT,
   ARROW_VERTEX,
@@ -48,6 +50,7 @@ export function neededBuffers(shown: Shown, field: ShownField | undefined): { di
     { digest: mesh.triangle_faces, format: "uint" },
     { digest: mesh.edges, format: "byte" },
   ];
+  if (mesh.base_faces) needed.push({ digest: mesh.base_faces, format: "uint" });
   if (directions) needed.push({ digest: directions.outward, format: "vec3" });
   if (field) needed.push({ digest: field.values, format: "float" });
   return needed;
@@ -64,6 +67,7 @@ export class Surface {
   private readonly arrows: LineSegments;
   private readonly uniforms: Uniforms;
   private readonly noValues = new DataTexture(new Float32Array(1), 1, 1, RedFormat, FloatType);
+  private panelStates = stateTexture(new Uint8Array(1), 1, 1);
   private maps = new Map<MapName, DataTexture>();
   private hasDirections = false;
   private wantsArrows = true;
@@ -97,6 +101,8 @@ export class Surface {
       this.set("triangles", buffers.texture(mesh.triangles_buffer, "uvec3"));
       this.set("triangleFaces", buffers.texture(mesh.triangle_faces, "uint"));
       this.set("edges", buffers.texture(mesh.edges, "byte"));
+      this.set("hasPanels", mesh.base_faces !== undefined);
+      this.set("baseFaces", buffers.texture(mesh.base_faces ?? mesh.triangle_faces, "uint"));
       this.geometry.setDrawRange(0, 3 * mesh.triangles);
       if (directions) this.showArrows(mesh.vertices, buffers.texture(directions.outward, "vec3"));
     }
@@ -153,6 +159,18 @@ export class Surface {
     this.set("pixelRatio", pixelRatio);
   }
 
+  /** Bits of each panel as the shaders know them; `isolating` hides those without bit 2. */
+  setPanels(states: Uint8Array, isolating: boolean): void {
+    const rows = Math.max(1, Math.ceil(states.length / ROW));
+    const texels = new Uint8Array(rows * ROW);
+    texels.set(states);
+    this.panelStates.dispose();
+    this.panelStates = stateTexture(texels, ROW, rows);
+    this.set("panelStates", this.panelStates);
+    this.set("panelStateCount", states.length);
+    this.set("isolating", isolating);
+  }
+
   setPicked(face: number | undefined): void {
     this.set("pickedFace", face ?? -1);
   }
@@ -198,6 +216,11 @@ export class Surface {
       triangles: null,
       triangleFaces: null,
       edges: null,
+      baseFaces: null,
+      hasPanels: false,
+      panelStates: this.panelStates,
+      panelStateCount: 0,
+      isolating: false,
       outward: null,
       values: this.noValues,
       valuesOn: 0,
@@ -223,4 +246,11 @@ export class Surface {
     };
     return Object.fromEntries(Object.entries(values).map(([name, value]) => [name, { value }]));
   }
+}
+
+function stateTexture(states: Uint8Array<ArrayBuffer>, width: number, height: number): DataTexture {
+  const texture = new DataTexture(states, width, height, RedIntegerFormat, UnsignedByteType);
+  texture.unpackAlignment = 1;
+  texture.needsUpdate = true;
+  return texture;
 }

@@ -21,6 +21,7 @@ import type { ColourRange } from "../core/legend.ts";
 import type { Shown, ShownField, Vec3 } from "../core/protocol.ts";
 import { Buffers, type LoadTimes } from "./buffers.ts";
 import { type CameraState, ViewCamera } from "./camera.ts";
+import { boxCorners, samplePoints } from "./fit.ts";
 import { Ground } from "./ground.ts";
 import { Marks } from "./marks.ts";
 import { type EdgeMode, Surface, neededBuffers } from "./surface.ts";
@@ -30,7 +31,7 @@ import { type ThemeName, VIEW_THEMES } from "./theme.ts";
 ColorManagement.enabled = false;
 
 /** What lies under a pixel. */
-export type Hit = { face: number; vertex: number; triangle: number; point: Vector3 };
+export type Hit = { face: number; panel: number; vertex: number; point: Vector3 };
 
 /** A section plane: axis, place along it in absolute metres, and which side stays. */
 export type Section = { axis: 0 | 1 | 2; at: number; flipped: boolean };
@@ -66,6 +67,7 @@ export class Viewer {
   private edgeMode: EdgeMode = "polygons";
   private section: Section | undefined;
   private fitted = false;
+  private samples: { digest: string; points: Vec3[] } | undefined;
 
   /** Throws where the browser gives no WebGL2. */
   constructor(
@@ -124,7 +126,10 @@ export class Viewer {
     this.sequence += 1;
     const { sequence } = this;
     const needed = neededBuffers(shown, field);
-    const times = await this.buffers.load(needed, (digest, bytes) => this.onBuffer(digest, bytes));
+    const times = await this.buffers.load(needed, (digest, bytes) => {
+      if (digest === shown.mesh?.positions) this.samples = { digest, points: samplePoints(new Float32Array(bytes)) };
+      this.onBuffer(digest, bytes);
+    });
     if (sequence !== this.sequence) return;
     this.buffers.keep(needed);
     this.shown = shown;
@@ -144,7 +149,7 @@ export class Viewer {
     if (!this.fitted && mesh.triangles > 0) {
       this.fitted = true;
       void this.camera.controls.rotateTo(Math.PI / 5, Math.PI / 2.9, false);
-      this.camera.fit(this.box(), false);
+      this.camera.fit(this.points(), false);
     }
   }
 
@@ -167,9 +172,19 @@ export class Viewer {
     return new Vector3(point[0] - origin[0], point[1] - origin[1], point[2] - origin[2]);
   }
 
+  /** Points that stand for the model: some of its vertices, or its box. */
+  private points(): Vector3[] {
+    const mesh = this.shown?.mesh;
+    if (!mesh) return [];
+    const corners = boxCorners(this.box());
+    if (this.samples?.digest !== mesh.positions || this.samples.points.length === 0) return corners;
+    const shift = this.toScene(mesh.origin);
+    return this.samples.points.map(([x, y, z]) => new Vector3(x, y, z).add(shift));
+  }
+
+  /** Fits the view to some points in absolute metres, or to the model. */
   fit(points?: Vec3[]): void {
-    const box = points && points.length > 0 ? new Box3().setFromPoints(points.map((p) => this.toScene(p))) : this.box();
-    this.camera.fit(box);
+    this.camera.fit(points && points.length > 0 ? points.map((p) => this.toScene(p)) : this.points());
     this.invalidate();
   }
 
@@ -202,11 +217,11 @@ export class Viewer {
     gl.readPixels(0, 0, 1, 1, gl.RGBA_INTEGER, gl.UNSIGNED_INT, ids);
     this.renderer.setRenderTarget(null);
     camera.clearViewOffset();
-    const [triangle = 0, face = 0, vertex = 0, bits = 0] = ids;
-    if (triangle === 0) return undefined;
+    const [face = 0, panel = 0, vertex = 0, bits = 0] = ids;
+    if (face === 0) return undefined;
     const depth = new Float32Array(new Uint32Array([bits]).buffer)[0] as number;
     const point = new Vector3((2 * x) / width - 1, 1 - (2 * y) / height, 2 * depth - 1).unproject(camera);
-    return { face, vertex, triangle: triangle - 1, point };
+    return { face: face - 1, panel, vertex, point };
   }
 
   setColours(map: MapName, range: ColourRange): void {
@@ -246,6 +261,11 @@ export class Viewer {
 
   setPicked(face: number | undefined): void {
     this.surface.setPicked(face);
+    this.invalidate();
+  }
+
+  setPanels(states: Uint8Array, isolating: boolean): void {
+    this.surface.setPanels(states, isolating);
     this.invalidate();
   }
 

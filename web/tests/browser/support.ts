@@ -121,7 +121,7 @@ export class LivePage {
     page.on("pageerror", (error) => this.complaints.push(String(error)));
     page.on("console", (message) => {
       // A server that is gone makes the browser itself complain of the connection.
-      const expected = /ERR_CONNECTION_REFUSED|WebSocket connection|status of 401/.test(message.text());
+      const expected = /ERR_CONNECTION_(REFUSED|RESET)|WebSocket connection|status of 401/.test(message.text());
       if (["error", "warning"].includes(message.type()) && !expected) this.complaints.push(message.text());
     });
   }
@@ -167,7 +167,7 @@ export class LivePage {
   async picture(): Promise<Picture> {
     const hidden = await this.page.evaluateHandle(() => {
       const sheet = new CSSStyleSheet();
-      sheet.replaceSync(".stage > :not(canvas), .stage::after { visibility: hidden !important }");
+      sheet.replaceSync(".banner, .stage > :not(canvas), .stage::after { visibility: hidden !important }");
       document.adoptedStyleSheets.push(sheet);
       return sheet;
     });

@@ -49,6 +49,15 @@ test("the two sides of the diverging map are told apart by all", () => {
   }
 });
 
+test("what must not be gets darker the more there is, and nothing stays plain", () => {
+  for (const matrix of [undefined, ...Object.values(BLIND)]) {
+    const look = (t: number): Rgb => (matrix ? seen(colourAt("alarm", t), matrix) : colourAt("alarm", t));
+    const lightness = SAMPLES.slice(1).map((t) => oklab(decode(look(t)))[0]);
+    for (let i = 1; i < lightness.length; i += 1) assert.ok((lightness[i] as number) < (lightness[i - 1] as number), String(SAMPLES[i + 1]));
+    assert.ok(difference(look(0), look(1 / 255)) > 0.08, "one is told from none");
+  }
+});
+
 test("a map's texture begins and ends with its ends", () => {
   const bytes = mapBytes("sequential");
   const end = (t: number): number[] => colourAt("sequential", t).map((c) => Math.round(255 * c));
@@ -85,8 +94,12 @@ test("signed fields get a diverging map and a range about zero", () => {
   const plain = { min: 1, max: 3, categorical: false };
   assert.equal(suitableMap(plain), "sequential");
   assert.deepEqual(fullRange(plain, "sequential"), { min: 1, max: 3 });
-  const flat = fullRange({ min: 2, max: 2, categorical: false }, "sequential");
-  assert.ok(flat.max > flat.min);
+  const counts = { min: 0, max: 9, categorical: false };
+  assert.equal(suitableMap(counts, new Float32Array([0, 0, 0, 9])), "alarm");
+  assert.equal(suitableMap(counts, new Float32Array([0, 1, 2, 9])), "sequential");
+  assert.equal(suitableMap({ min: 0, max: 0, categorical: false }, new Float32Array(3)), "alarm", "no crossing anywhere is plain too");
+  assert.deepEqual(fullRange({ min: 2, max: 2, categorical: false }, "sequential"), { min: 2, max: 4 });
+  assert.deepEqual(fullRange({ min: 0, max: 0, categorical: false }, "alarm"), { min: 0, max: 1 });
 });
 
 test("a locked range stays while the model changes", () => {

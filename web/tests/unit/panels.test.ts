@@ -12,8 +12,10 @@ import { rank } from "../../src/panels/dialogs.ts";
 import { groupParameters } from "../../src/panels/parameters.ts";
 import { sortedRows } from "../../src/panels/table.ts";
 import { choices } from "../../src/panels/topbar.ts";
+import { Panels } from "../../src/tools/panels.ts";
+import { nextPick } from "../../src/tools/picking.ts";
 import { wrap } from "../../src/tools/screenshot.ts";
-import { fitDistance } from "../../src/view/fit.ts";
+import { fitPoints, samplePoints } from "../../src/view/fit.ts";
 import { gridLines } from "../../src/view/grid_lines.ts";
 import { scaleLength } from "../../src/view/scale.ts";
 
@@ -65,6 +67,10 @@ test("the chip says what is true of the picture", () => {
   const of = (status: Partial<Status>): string => chipOf("open", hello, { type: "status", state: "up_to_date", ...status }, undefined).text;
   assert.equal(of({ ms: 210 }), "Up to date 210 ms");
   assert.equal(of({ state: "computing", done: 3, total: 7, node: "even", fraction: 0.5 }), "Computing 3/7 even 50 %");
+  const timed = (elapsed: number, last?: number): string => chipOf("open", hello, { type: "status", state: "computing", done: 0, total: 2 }, undefined, { elapsed, last }).text;
+  assert.equal(timed(100, 4000), "Computing 0/2");
+  assert.equal(timed(1234, 4000), "Computing 0/2 · 1.2 s of ~4.00 s");
+  assert.equal(timed(1234), "Computing 0/2 · 1.2 s");
   assert.equal(of({ state: "stale", errors: 2, line: 14 }), "Stale: 2 errors (line 14)");
   assert.equal(of({ state: "stale", errors: 1 }), "Stale: 1 error");
   assert.equal(of({ state: "waiting", waiting_for: "meshes/roof.obj" }), "Waiting for meshes/roof.obj");
@@ -152,12 +158,59 @@ test("the scale bar is a round length that fits", () => {
   assert.ok(Math.abs(pixels - 1 / 0.013) < 1e-9);
 });
 
-test("a fitted camera sees every corner, and one of them at the border", () => {
-  const corners = [[-1, -2, -3], [1, 2, 3], [1, -2, 3], [-1, 2, -3]].map(([x = 0, y = 0, z = 0]) => new Vector3(x, y, z));
-  const axes = [new Vector3(1, 0, 0), new Vector3(0, 1, 0), new Vector3(0, 0, 1)] as const;
-  const distance = fitDistance(corners, ...axes, 0.5, 0.3);
-  const most = Math.max(...corners.map((c) => Math.max(Math.abs(c.x) / 0.5, Math.abs(c.y) / 0.3) / (distance - c.z)));
-  assert.ok(Math.abs(most - 1) < 1e-12);
+test("a fitted camera sees every point, and two opposite sides touch", () => {
+  const points = [[-1, -2, -3], [4, 2, 3], [1, -2, 3], [-1, 2, -3], [0, 0, 5]].map(([x = 0, y = 0, z = 0]) => new Vector3(x, y, z));
+  const lens = { right: new Vector3(1, 0, 0), up: new Vector3(0, 1, 0), back: new Vector3(0, 0, 1), tangentX: 0.5, tangentY: 0.3 };
+  const { target, distance, extent } = fitPoints(points, lens);
+  const seen = points.map((p) => p.clone().sub(target)).map((p) => ({ x: p.x / (distance - p.z) / 0.5, y: p.y / (distance - p.z) / 0.3 }));
+  const sides = [Math.max(...seen.map((s) => s.x)), -Math.min(...seen.map((s) => s.x)), Math.max(...seen.map((s) => s.y)), -Math.min(...seen.map((s) => s.y))];
+  for (const side of sides) assert.ok(side <= 1 + 1e-12, String(sides));
+  const touching = sides.map((side) => Math.abs(side - 1) < 1e-12);
+  assert.ok((touching[0] && touching[1]) || (touching[2] && touching[3]), String(sides));
+  assert.ok(extent >= 2.5 && extent >= (2 * 0.5) / 0.3);
+});
+
+test("clicks go from the panel to its face to its vertex, and begin anew elsewhere", () => {
+  const hit = { face: 5, panel: 2, vertex: 9 };
+  const panel = nextPick(undefined, hit, true);
+  assert.equal(panel.level, "panel");
+  const face = nextPick(panel, hit, true);
+  assert.equal(face.level, "face");
+  assert.equal(nextPick(face, { ...hit, face: 6 }, true).level, "face", "another face of the same panel");
+  const vertex = nextPick(face, hit, true);
+  assert.equal(vertex.level, "vertex");
+  assert.equal(nextPick(vertex, hit, true).level, "panel");
+  assert.equal(nextPick(face, { ...hit, face: 7, panel: 3 }, true).level, "panel");
+  assert.equal(nextPick(undefined, { ...hit, panel: 5 }, false).level, "face", "without panels, faces come first");
+});
+
+test("panels are hidden and isolated by what is selected", () => {
+  const panels = new Panels();
+  panels.select(1, false);
+  panels.select(3, true);
+  assert.deepEqual([...panels.states()], [0, 4, 0, 4]);
+  panels.select(3, true);
+  assert.deepEqual([...panels.states()], [0, 4], "a second Shift click takes it away");
+  assert.equal(panels.hide(), 1);
+  assert.deepEqual([...panels.states()], [0, 1]);
+  panels.select(0, false);
+  panels.isolate();
+  assert.deepEqual([...panels.states()], [6, 1]);
+  const copy = new Panels();
+  copy.restore(panels.state());
+  assert.ok(copy.isIsolating && copy.hidesSome);
+  assert.deepEqual([...copy.states()], [2, 1]);
+  copy.isolate();
+  assert.ok(!copy.isIsolating);
+  copy.showAll();
+  assert.equal(copy.states().length, 0);
+});
+
+test("few vertices stand for many, and all for few", () => {
+  assert.equal(samplePoints(new Float32Array(12)).length, 4);
+  const many = samplePoints(Float32Array.from({ length: 3 * 100_000 }, (_, i) => i));
+  assert.ok(many.length >= 5000 && many.length <= 10_000);
+  assert.deepEqual(many[0], [0, 1, 2]);
 });
 
 test("captions fill their lines", () => {
