@@ -2,20 +2,18 @@
 
 use std::sync::Arc;
 
-use tessgraph_geometry::compensate::SideReport;
 use tessgraph_geometry::subdivide::Parents;
-use tessgraph_geometry::{
-    Amount, Directions, Domain, Field, GeometryError, Mesh, PatchGrids, Quantity,
-};
+use tessgraph_geometry::{Amount, Directions, GeometryError, Mesh, PatchGrids};
 use tessgraph_geometry::{
     ArrayDomain, ArrayOptions, Arrayed, Height, Interpolation, Join, PerVertexOptions,
-    PerVertexReport, array_compensated, array_components, list_ids,
+    PerVertexReport, array_compensated, array_components,
 };
 use tessgraph_graph::{EvalCx, Node, NodeError};
-use tessgraph_macros::{Choice, Inputs, Outputs};
+use tessgraph_macros::{Choice, Inputs};
 
 use crate::compensate_thickness::BorderChoice;
 use crate::fit_component::{FitChoice, warn_of_outside, warn_of_shape};
+use crate::support::arrayed::{ArrayedComponents, warn_of_heights};
 use crate::support::choice_of_components::{Cells, Chooser, Per, first_of_source};
 
 /// Maps a component to every face of a base surface (paper, figure 1).
@@ -144,56 +142,6 @@ pub(crate) struct ArrayComponents {
     limit: f64,
 }
 
-/// The array and what became of its joints.
-#[derive(Outputs)]
-pub(crate) struct ArrayedComponents {
-    /// The components on their faces.
-    mesh: Arc<Mesh>,
-    /// How many components were placed.
-    placed: usize,
-    /// How many vertices on the sides of components found no partner.
-    unmatched: usize,
-    /// Coarse faces that took no component because they have not four sides.
-    skipped_parents: usize,
-    /// Vertices without a solution on both sides together; this and all below are
-    /// 0 without `compensate: PerVertex`, and leave out vertices at height 0.
-    unsolved: usize,
-    /// What became of each vertex: 0 at its height, 1 from the continued border, 2 from
-    /// the base but not from its continued border, 3 unsolved, -1 at height 0. Empty
-    /// without `compensate: PerVertex`.
-    status: Arc<Field>,
-    /// Vertices above the base at their height from it.
-    outward_solved: usize,
-    /// Vertices above the base at their height from the continued border.
-    outward_extended: usize,
-    /// Vertices above the base at their height from it, not from its continued border.
-    outward_border_clipped: usize,
-    /// Vertices above the base that could not reach their height.
-    outward_unsolved: usize,
-    /// Largest error of solved and extended vertices above the base, as a share
-    /// of their heights.
-    outward_max_error: f64,
-    /// Root mean square error of solved and extended vertices above the base.
-    outward_rms_error: f64,
-    /// Vertices below the base at their height from it.
-    inward_solved: usize,
-    /// Vertices below the base at their height from the continued border.
-    inward_extended: usize,
-    /// Vertices below the base at their height from it, not from its continued border.
-    inward_border_clipped: usize,
-    /// Vertices below the base that could not reach their height.
-    inward_unsolved: usize,
-    /// Largest error of solved and extended vertices below the base, as a share
-    /// of their heights.
-    inward_max_error: f64,
-    /// Root mean square error of solved and extended vertices below the base.
-    inward_rms_error: f64,
-    /// Distances evaluated in all.
-    evaluations: i64,
-    /// Distances evaluated for one vertex at most.
-    most_evaluations: u32,
-}
-
 /// What one component is mapped over.
 #[derive(Clone, Copy, PartialEq, Eq, Choice)]
 pub(crate) enum DomainChoice {
@@ -300,18 +248,9 @@ impl Node for ArrayComponents {
             ));
         }
         if let Some(report) = &report {
-            warn(cx, "above", &report.outward, &report.outward_faces);
-            warn(cx, "below", &report.inward, &report.inward_faces);
+            warn_of_heights(report, cx);
         }
-        let status = match &report {
-            Some(report) => {
-                let sides = [&report.outward, &report.inward];
-                SideReport::status_field(&sides, array.mesh.vertex_count())?
-            }
-            None => Field::new(Domain::Vertex, Quantity::Number, Vec::new())?,
-        };
-        let report = report.unwrap_or_default();
-        Ok(ArrayedComponents::new(array, &report, status))
+        Ok(ArrayedComponents::new(array, report.as_ref())?)
     }
 }
 
@@ -435,60 +374,6 @@ impl ArrayComponents {
         let (array, report) =
             array_compensated(base, components, directions, options, &rule, monitor)?;
         Ok((array, Some(report)))
-    }
-}
-
-impl ArrayedComponents {
-    fn new(array: Arrayed, report: &PerVertexReport, status: Field) -> Self {
-        let PerVertexReport {
-            outward, inward, ..
-        } = report;
-        Self {
-            placed: array.placed,
-            unmatched: array.join.as_ref().map_or(0, |join| join.open),
-            mesh: Arc::new(array.mesh),
-            skipped_parents: array.skipped_parents,
-            unsolved: outward.unsolved.len() + inward.unsolved.len(),
-            status: Arc::new(status),
-            outward_solved: outward.solved,
-            outward_extended: outward.extended,
-            outward_border_clipped: outward.border_clipped.len(),
-            outward_unsolved: outward.unsolved.len(),
-            outward_max_error: outward.solved_errors.max,
-            outward_rms_error: outward.solved_errors.rms,
-            inward_solved: inward.solved,
-            inward_extended: inward.extended,
-            inward_border_clipped: inward.border_clipped.len(),
-            inward_unsolved: inward.unsolved.len(),
-            inward_max_error: inward.solved_errors.max,
-            inward_rms_error: inward.solved_errors.rms,
-            evaluations: (outward.evaluations + inward.evaluations).cast_signed(),
-            most_evaluations: outward.most_evaluations.max(inward.most_evaluations),
-        }
-    }
-}
-
-/// Names the vertices of one side that are not at their height.
-fn warn(cx: &EvalCx<'_>, side: &str, report: &SideReport, faces: &[u32]) {
-    if let Some(first) = report.unsolved.first() {
-        let ids: Vec<u32> = report.unsolved.iter().map(|one| one.vertex).collect();
-        cx.warn(format!(
-            "{side} the base, no solution at {} of {} vertices: {} (3 in `status`); they are on \
-             base faces {}; vertex {} reaches {} of {}",
-            ids.len(),
-            report.vertices(),
-            list_ids(&ids),
-            list_ids(faces),
-            first.vertex,
-            cx.length(first.reached),
-            cx.length(first.wanted),
-        ));
-    }
-    if !report.border_clipped.is_empty() {
-        cx.warn(format!(
-            "{side} the base, its border could not be continued at vertices {}",
-            list_ids(&report.border_clipped)
-        ));
     }
 }
 
