@@ -41,9 +41,16 @@ const PICTURES: Picture[] = [
     height: 1080,
     light: true,
     pose: async (live) => {
-      await show(live, "monoclastic_default");
+      await show(live, "anticlastic_default");
       await live.page.waitForTimeout(1000);
-      await colourBy(live, "monoclastic default crossings");
+      await colourBy(live, "anticlastic default crossings");
+      // From higher up and more along the fold, where bricks cross.
+      await live.page.mouse.move(1200, 150);
+      await live.page.mouse.down();
+      await live.page.mouse.move(1330, 290, { steps: 8 });
+      await live.page.mouse.up();
+      await live.page.waitForTimeout(1000);
+      await live.page.keyboard.press("f");
     },
   },
 ];
@@ -59,6 +66,7 @@ try {
     if (light) await live.page.keyboard.press("t");
     await pose(live);
     await live.page.waitForTimeout(2500);
+    await live.page.evaluate(() => (document.activeElement as HTMLElement | null)?.blur());
     const path = `${FOLDER}${name}.png`;
     await live.page.screenshot({ path });
     // A palette makes them three times smaller; without pngquant they stay as they are.

@@ -20,6 +20,8 @@ export class Topbar {
   private readonly chipText = element("span", { class: "chip-text" });
   private readonly chipSign = element("span", { class: "chip-sign", "aria-hidden": "true" });
   private readonly chipHint = element("span", { class: "chip-hint" });
+  /** What a screen reader says: the state without the seconds that count up. */
+  private readonly spoken = element("span", { role: "status", class: "spoken" });
   private readonly outputs = element("select", { "aria-label": "What is shown", title: tooltip("next_output") });
   private readonly counts = element("span", { class: "counts" });
   private readonly colours = element("select", { "aria-label": "Colour by", title: tooltip("colour") });
@@ -34,7 +36,7 @@ export class Topbar {
   ) {
     this.chip.append(this.chipSign, this.chipText, this.chipHint);
     this.chip.addEventListener("click", () => this.chipAct?.());
-    const live = element("span", { role: "status", class: "chip-holder" }, this.chip);
+    const live = element("span", { class: "chip-holder" }, this.chip, this.spoken);
     const small = (label: string, action: Action): HTMLButtonElement => button(label, tooltip(action), () => events.act(action), { class: "icon" });
     this.root.append(
       this.file,
@@ -90,6 +92,8 @@ export class Topbar {
     this.chip.className = `chip ${chip.kind}`;
     setText(this.chipSign, chip.sign);
     setText(this.chipText, chip.text);
+    const state = store.get("status")?.state === "computing" ? "Computing" : chip.text;
+    setText(this.spoken, state);
     const cause = store.get("status")?.cause;
     this.chip.title = cause ? `${chip.text} · ${cause}` : chip.text;
     const hints = { cancel: "Esc stops", messages: "see messages", run: "run again" };

@@ -48,6 +48,7 @@ export class ViewCamera {
   private aspect = 1;
   private bounds = new THREE.Sphere(new THREE.Vector3(), 1);
   private pinching = false;
+  private pressedAt: { x: number; y: number } | undefined;
   profile: Profile = "rhino";
   /** Finds the scene point under the pointer, to orbit about it. */
   pointUnder: (x: number, y: number) => THREE.Vector3 | undefined = () => undefined;
@@ -65,6 +66,10 @@ export class ViewCamera {
     this.controls.draggingSmoothTime = 0.03;
     this.controls.minDistance = 1e-4;
     canvas.addEventListener("pointerdown", (event) => this.prepareDrag(event), { capture: true });
+    window.addEventListener("pointermove", (event) => this.beginDrag(event), { capture: true });
+    window.addEventListener("pointerup", () => {
+      this.pressedAt = undefined;
+    }, { capture: true });
     canvas.addEventListener("wheel", (event) => this.prepareWheel(event), { capture: true, passive: false });
   }
 
@@ -177,9 +182,20 @@ export class ViewCamera {
     buttons.middle = this.profile === "rhino" ? ACTION.TRUCK : orbit;
     buttons.right = this.profile === "rhino" ? orbit : ACTION.TRUCK;
     const pressed = [buttons.left, buttons.middle, buttons.right][event.button];
-    if (event.pointerType !== "touch" && pressed !== ACTION.ROTATE) return;
+    const orbits = event.pointerType === "touch" || pressed === ACTION.ROTATE;
+    this.pressedAt = orbits ? { x: event.clientX, y: event.clientY } : undefined;
+  }
+
+  /**
+   * When a press becomes a drag it orbits about the point it began on. A mere click
+   * leaves the camera alone.
+   */
+  private beginDrag(event: PointerEvent): void {
+    const from = this.pressedAt;
+    if (!from || Math.hypot(event.clientX - from.x, event.clientY - from.y) < 2) return;
+    this.pressedAt = undefined;
     const rectangle = this.canvas.getBoundingClientRect();
-    const point = this.pointUnder(event.clientX - rectangle.left, event.clientY - rectangle.top);
+    const point = this.pointUnder(from.x - rectangle.left, from.y - rectangle.top);
     if (point) this.controls.setOrbitPoint(point.x, point.y, point.z);
   }
 

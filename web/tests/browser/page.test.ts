@@ -41,9 +41,7 @@ test("every shipped graph opens and is drawn", async () => {
     assert.match(await page.counts(), /^[1-9][\d\u202f]* faces/, name);
     const drawn = await page.picture();
     await page.page.keyboard.press("w");
-    await page.page.waitForTimeout(200);
-    const ghost = await page.picture();
-    assert.ok((await drawn.difference(ghost, page.page)) > 0.005, `${name}: there is a model to see through`);
+    await page.changes(drawn, `${name}: there is a model to see through`, 0.005);
     assert.deepEqual(page.complaints, [], name);
     await page.close();
     await server.kill();
@@ -59,8 +57,7 @@ test("a slider changes counts, picture and one value of the file", async () => {
   await eventually("the file is written", () => readFileSync(file, "utf8") !== source);
   assert.equal(readFileSync(file, "utf8"), source.replace("Integer(default: 2,", "Integer(default: 1,"));
   await eventually("the counts change", async () => (await page.counts()) !== counts);
-  await page.settled();
-  assert.ok((await picture.difference(await page.picture(), page.page)) > 0.02);
+  await page.changes(picture, "another picture", 0.02);
   await page.page.keyboard.press("Control+z");
   await eventually("undo brings the bytes back", () => readFileSync(file, "utf8") === source);
   await eventually("and the counts", async () => (await page.counts()) === counts);
@@ -102,8 +99,7 @@ test("a broken file shows its error and the last good picture, marked; mended it
   // The picture is still there: seen through, it changes.
   const stale = await page.picture();
   await page.page.keyboard.press("w");
-  await page.page.waitForTimeout(200);
-  assert.ok((await stale.difference(await page.picture(), page.page)) > 0.005);
+  await page.changes(stale, "a model to see through", 0.005);
   await page.page.locator(".diagnostic .link").first().click();
   await page.page.locator(".source .line.lit").first().waitFor();
   assert.match(await page.page.locator(".source .mark").first().innerText(), /SubdivideQuat/);
@@ -148,26 +144,51 @@ test("a click on the model reads out a face, a second one a vertex; Esc lets go"
   assert.match(await page.page.locator(".readout dd").first().innerText(), /\d.*m/);
 });
 
+test("a panel is hidden and comes back", async () => {
+  const { page } = await open("graphs/figures/figure_03.ron");
+  const before = await page.picture();
+  const box = await page.page.locator(".stage canvas").boundingBox();
+  assert.ok(box);
+  await page.page.mouse.click(box.x + box.width / 2, box.y + box.height / 2);
+  await page.page.locator(".readout strong").filter({ hasText: /^Panel \d+/ }).waitFor();
+  await page.page.keyboard.press("h");
+  await page.page.locator(".readout").waitFor({ state: "hidden" });
+  await page.changes(before, "a hole is seen", 0.005);
+  await page.page.keyboard.press("Shift+H");
+  await page.becomes(before, "the picture before");
+});
+
+test("a saved picture is a PNG named after file and node", async () => {
+  const { page } = await open("graphs/torus.ron");
+  const saving = page.page.waitForEvent("download");
+  await page.page.keyboard.press("s");
+  const download = await saving;
+  assert.equal(download.suggestedFilename(), "torus_lattice.png");
+  const bytes = readFileSync(await download.path());
+  assert.deepEqual([...bytes.subarray(1, 4)], [...Buffer.from("PNG")]);
+  assert.ok(bytes.length > 20_000, "there is something on it");
+});
+
 test("the camera stays across updates, reloads and a killed server", async () => {
   workshop = new Workshop();
   const first = await workshop.serve("graphs/torus.ron");
   live = await LivePage.open(browser, first.address);
   await live.settled();
   const page = live;
+  const corner = await page.picture();
   await page.page.keyboard.press("7");
-  await page.page.waitForTimeout(400);
+  await page.changes(corner, "a look from above");
+  await page.page.waitForTimeout(1000);
   const top = await page.picture();
   await page.page.reload();
   await page.settled();
-  await page.page.waitForTimeout(400);
-  assert.ok((await top.difference(await page.picture(), page.page)) < 0.002, "the same picture after a reload");
+  await page.becomes(top, "the same picture after a reload");
   await first.kill();
   await page.chip(/^Disconnected/);
-  assert.ok((await top.difference(await page.picture(), page.page)) < 0.002, "the picture stays without a server");
+  await page.becomes(top, "the picture stays without a server");
   await workshop.serve("graphs/torus.ron", { port: first.port, token: first.token });
   await page.chip(/^Up to date/);
-  await page.page.waitForTimeout(400);
-  assert.ok((await top.difference(await page.picture(), page.page)) < 0.002, "the same picture from the next server");
+  await page.becomes(top, "the same picture from the next server");
   assert.deepEqual(page.complaints, []);
 });
 
@@ -204,10 +225,8 @@ test("colours, legend, section, directions and edges change the picture", async 
   const { page } = await open("graphs/facade.ron");
   let last = await page.picture();
   const changed = async (what: string): Promise<void> => {
-    await page.page.waitForTimeout(500);
-    const now = await page.picture();
-    assert.ok((await last.difference(now, page.page)) > 0.002, what);
-    last = now;
+    await page.changes(last, what);
+    last = await page.picture();
   };
   await page.page.keyboard.press("e");
   await changed("triangle edges");
@@ -241,8 +260,7 @@ test("a lost graphics context comes back with the same picture", async () => {
     extension.restoreContext();
     await restored;
   });
-  await page.page.waitForTimeout(1500);
-  assert.ok((await before.difference(await page.picture(), page.page)) < 0.002);
+  await page.becomes(before, "the same picture");
 });
 
 test("everything is reached by Tab, and the sheet of keys opens and closes", async () => {

@@ -163,11 +163,11 @@ export class LivePage {
     return this.page.locator(".counts").innerText();
   }
 
-  /** The picture alone, without what lies over it, as pixels. */
+  /** The picture alone, without what lies over it or marks the focus, as pixels. */
   async picture(): Promise<Picture> {
     const hidden = await this.page.evaluateHandle(() => {
       const sheet = new CSSStyleSheet();
-      sheet.replaceSync(".banner, .stage > :not(canvas), .stage::after { visibility: hidden !important }");
+      sheet.replaceSync(".banner, .stage > :not(canvas), .stage::after { visibility: hidden !important } .stage canvas { outline: none !important }");
       document.adoptedStyleSheets.push(sheet);
       return sheet;
     });
@@ -176,6 +176,16 @@ export class LivePage {
       document.adoptedStyleSheets = document.adoptedStyleSheets.filter((s) => s !== sheet);
     });
     return new Picture(png.toString("base64"));
+  }
+
+  /** Waits until the picture is the one from before again. */
+  async becomes(picture: Picture, what: string): Promise<void> {
+    await eventually(what, async () => (await picture.difference(await this.picture(), this.page)) < 0.002);
+  }
+
+  /** Waits until the picture is visibly another one. */
+  async changes(picture: Picture, what: string, least = 0.002): Promise<void> {
+    await eventually(what, async () => (await picture.difference(await this.picture(), this.page)) > least);
   }
 
   /** Moves a parameter's slider with the mouse, as a hand does. */
