@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::Mesh;
 use crate::normals::newell;
-use crate::parallel::in_order;
+use crate::parallel::{fill_runs, zeroed};
 use crate::{GeometryError, Monitor, Unmonitored};
 
 /// How often ear clipping looks at a corner of one face before it gives up: a
@@ -28,7 +28,8 @@ impl Mesh {
     ///
     /// A non-planar polygon has no one surface; this is the one that distances,
     /// areas, intersections and file writers of this crate all mean. A face of
-    /// n corners gives n - 2 triangles. Cost: O(corners), and O(n²) for a
+    /// n corners gives n - 2 triangles. Cost: O(corners) on
+    /// all threads, and O(n²) for a
     /// concave face of n corners, up to 2²⁸ looks at corners: the rest of a face
     /// that takes more, one of tens of thousands of corners, is a fan.
     pub fn triangles(&self) -> Triangles {
@@ -41,31 +42,46 @@ impl Mesh {
     /// # Errors
     /// [`GeometryError::Cancelled`] when `monitor` asks to stop.
     pub fn triangles_with(&self, monitor: &dyn Monitor) -> Result<Triangles, GeometryError> {
-        let count = self.corner_count().saturating_sub(2 * self.face_count());
-        let mut out = Triangles {
-            corners: Vec::with_capacity(count),
-            faces: Vec::with_capacity(count),
-        };
-        let mut ears = Vec::new();
-        in_order(self.face_count(), monitor, |face| {
-            let start = self.topology().corner_range(face).start as u32;
-            let vertices = self.face(face);
-            let fan = |k: usize| [start, start + k as u32, start + k as u32 + 1];
-            if vertices.len() == 3 {
-                out.corners.push(fan(1));
-            } else {
-                let place = |k: usize| self.positions()[vertices[k] as usize];
-                if is_simple_fan(vertices.len(), place) {
-                    out.corners.extend((1..vertices.len() - 1).map(fan));
-                } else {
-                    clip_ears(vertices.len(), place, &mut ears);
-                    out.corners
-                        .extend(ears.iter().map(|ear| ear.map(|k| start + k)));
-                }
+        // A face of n corners gives n - 2 triangles, so all of them know their places.
+        let offsets = self.topology().offsets().iter().zip(0u32..);
+        let starts: Vec<u32> = offsets.map(|(offset, face)| offset - 2 * face).collect();
+        let count = starts.last().map_or(0, |&end| end as usize);
+        let mut corners = zeroed(count);
+        fill_runs(
+            &mut corners,
+            &starts,
+            monitor,
+            Vec::new,
+            |ears, face, run| self.cut(face, ears, run),
+        )?;
+        let mut faces = zeroed(count);
+        fill_runs(
+            &mut faces,
+            &starts,
+            monitor,
+            || (),
+            |(), face, run| {
+                run.fill(face as u32);
+            },
+        )?;
+        Ok(Triangles { corners, faces })
+    }
+
+    /// The triangles of one face.
+    fn cut(&self, face: usize, ears: &mut Vec<[u32; 3]>, out: &mut [[u32; 3]]) {
+        let start = self.topology().corner_range(face).start as u32;
+        let vertices = self.face(face);
+        let place = |k: usize| self.positions()[vertices[k] as usize];
+        if vertices.len() == 3 || is_simple_fan(vertices.len(), place) {
+            for (triangle, k) in out.iter_mut().zip(start + 1..) {
+                *triangle = [start, k, k + 1];
             }
-            out.faces.resize(out.corners.len(), face as u32);
-        })?;
-        Ok(out)
+        } else {
+            clip_ears(vertices.len(), place, ears);
+            for (triangle, ear) in out.iter_mut().zip(ears) {
+                *triangle = ear.map(|k| start + k);
+            }
+        }
     }
 
     /// The vertices of each triangle of [`Mesh::triangles`].
