@@ -5,8 +5,6 @@ use std::sync::Arc;
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
 use std::time::Instant;
 
-use crate::commands::run::Ran;
-
 /// Something the watcher has to deal with.
 pub(crate) enum Message {
     /// Something happened at these places.
@@ -18,7 +16,9 @@ pub(crate) enum Message {
     /// The run at work read a file, or found that there is none.
     Read(PathBuf, Option<Arc<[u8]>>),
     /// The run at work has ended.
-    Ended(Box<Ran>),
+    Ended,
+    /// Somebody asks for something.
+    Asked,
     /// No more is wanted.
     Stop,
 }

@@ -1,114 +1,160 @@
-//! `run --watch`: runs again whenever something changes that the last run
-//! depended on.
+//! Running again whenever something changes that the last run depended on.
 //!
 //! Runs take place on a thread of their own, while this one listens: to the
 //! system, which tells of files that were touched, and to the run, which tells
 //! of files it reads. What decides is always the content. Of the parts,
-//! [`debounce`] and [`dependencies`] know neither clock nor disk.
+//! [`debounce`] and [`dependencies`] know neither clock nor disk, [`rerun`] is
+//! what `run --watch` does; the live page does something else.
 
+mod cause;
 mod content;
 mod debounce;
 mod dependencies;
 mod mailbox;
 mod notices;
 mod places;
+mod rerun;
 mod resume;
 mod stamps;
 mod status;
 
 use std::collections::BTreeSet;
 use std::mem;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
-use std::thread::Scope;
+use std::thread::{Scope, ScopedJoinHandle};
 use std::time::Instant;
 
-use crate::commands::run::{
-    Control, Ran, ReportFormat, RunArgs, Session, Stopped, closing, details,
-};
-use crate::commands::{Context, OK, USAGE};
+use crate::commands::run::Control;
 use crate::interrupt::{self, INTERRUPTED};
-use crate::text::{count, printable};
 use debounce::Debounce;
 use places::Places;
 
+pub(crate) use cause::Cause;
 pub(crate) use mailbox::{Mailbox, Message, Post};
+pub(crate) use rerun::watch;
 pub(crate) use resume::begin_anew;
 
-/// Runs the graph now and after every change, until the mailbox says to stop.
-pub(crate) fn watch(
-    args: &RunArgs,
-    session: &Session<'_>,
-    mailbox: &Mailbox,
-    cx: &mut Context<'_, '_>,
-) -> u8 {
-    let watcher = Watcher {
-        args,
-        session,
-        post: mailbox.post(),
-        live: cx.console.is_live() && args.report == ReportFormat::Human,
-        places: Places::new(args, mailbox.post()),
-        debounce: Debounce::default(),
-        touched: BTreeSet::new(),
-        unlooked: BTreeSet::new(),
-        running: None,
-        again: !args.resume,
-        cause: args.graph.clone(),
-        is_first: !args.resume,
-        warned: false,
-    };
-    resume::arm();
-    if args.resume {
-        watcher.tell("waiting for a change of the graph\n", cx);
-        if args.report == ReportFormat::Json {
-            // The report of the run that could not end by itself.
-            closing(args, &Ran::never(Stopped::Graph(Vec::new())), cx);
-        }
+/// What is watched, and how.
+pub(crate) struct Watched<'a> {
+    /// The graph file.
+    pub(crate) graph: &'a Path,
+    /// Folders outside the graph's that may be read from.
+    pub(crate) allowed: &'a [PathBuf],
+    /// Whether files are looked at, because the system tells of no change.
+    pub(crate) poll: bool,
+}
+
+/// A run that is about to begin.
+pub(crate) type Job<'a, R> = Box<dyn FnOnce(&Control) -> R + Send + 'a>;
+
+/// What is done whenever something has changed.
+pub(crate) trait Work<'a> {
+    /// What a run comes to.
+    type Ran: Send + 'a;
+
+    /// The next run.
+    fn begin(&mut self, cause: &Cause) -> Job<'a, Self::Ran>;
+
+    /// Whether a run was stopped before it came to its end.
+    fn is_stopped(ran: &Self::Ran) -> bool;
+
+    /// Deals with a run that was stopped because of `cause`; says whether another
+    /// one is due.
+    fn stopped(&mut self, cause: &Cause, ran: Self::Ran) -> bool;
+
+    /// Deals with a run that depends on so many files; an exit status if it was
+    /// the last one.
+    fn ended(&mut self, cause: &Cause, ran: Self::Ran, files: usize) -> Option<u8>;
+
+    /// Deals with [`Message::Asked`].
+    fn asked(&mut self) -> Wish {
+        Wish::default()
     }
-    std::thread::scope(|scope| watcher.go(scope, mailbox, cx))
+
+    /// The system tells of no changes.
+    fn deaf(&mut self, reason: &str);
+}
+
+/// What somebody wants of the run at work and the next one.
+#[derive(Debug, Default, PartialEq, Eq)]
+pub(crate) struct Wish {
+    /// The run at work stops.
+    pub(crate) stop: bool,
+    /// Another one takes place, for this reason.
+    pub(crate) again: Option<Cause>,
+}
+
+/// Does the work at once unless `waits`, and again after every change, until the
+/// mailbox says to stop.
+pub(crate) fn follow<'a, W: Work<'a>>(
+    watched: &Watched<'a>,
+    waits: bool,
+    mailbox: &Mailbox,
+    work: W,
+) -> u8 {
+    std::thread::scope(|scope| {
+        let watcher = Watcher {
+            work,
+            post: mailbox.post(),
+            places: Places::new(watched, mailbox.post()),
+            debounce: Debounce::default(),
+            touched: BTreeSet::new(),
+            unlooked: BTreeSet::new(),
+            running: None,
+            again: !waits,
+            cause: Cause::File(watched.graph.to_owned()),
+        };
+        watcher.go(scope, mailbox)
+    })
 }
 
 /// What is going on.
-struct Watcher<'a> {
-    args: &'a RunArgs,
-    session: &'a Session<'a>,
+struct Watcher<'s, 'a, W: Work<'a>> {
+    work: W,
     post: Post,
-    /// Whether a bar shows progress.
-    live: bool,
     places: Places<'a>,
     debounce: Debounce,
     /// Files that may have changed since the last run began.
     touched: BTreeSet<PathBuf>,
     /// Those of them that were touched just now.
     unlooked: BTreeSet<PathBuf>,
-    /// The run at work.
-    running: Option<Arc<Control>>,
+    running: Option<Running<'s, W::Ran>>,
     /// Whether the next run takes place whatever has changed.
     again: bool,
     /// What the run at work, or the next one, is for.
-    cause: PathBuf,
-    is_first: bool,
-    /// Whether the warning about the cache was shown.
-    warned: bool,
+    cause: Cause,
 }
 
-impl<'a> Watcher<'a> {
-    fn go<'s>(mut self, scope: &'s Scope<'s, '_>, mailbox: &Mailbox, cx: &mut Context<'_, '_>) -> u8
-    where
-        'a: 's,
-    {
+/// The run at work.
+struct Running<'s, R> {
+    control: Arc<Control>,
+    thread: ScopedJoinHandle<'s, R>,
+}
+
+/// Tells that a run has come to its end, whichever way that is.
+struct Bell(Post);
+
+impl Drop for Bell {
+    fn drop(&mut self) {
+        // Nobody may be listening any more.
+        let _ = self.0.send(Message::Ended);
+    }
+}
+
+impl<'s, 'a: 's, W: Work<'a>> Watcher<'s, 'a, W> {
+    fn go(mut self, scope: &'s Scope<'s, '_>, mailbox: &Mailbox) -> u8 {
         loop {
             self.start_if_due(scope);
             for message in mailbox.wait(self.deadline()) {
-                if let Some(status) = self.take(message, cx) {
+                if let Some(status) = self.take(message) {
                     self.stop();
                     return status;
                 }
             }
             if let Some(reason) = self.places.deaf.take() {
-                let note = format!("note: changes are looked for, not told: {reason}\n");
-                cx.console.note(&printable(&note));
+                self.work.deaf(&reason);
             }
             let looked = self.places.look_if_due(Instant::now());
             self.touch(looked);
@@ -123,7 +169,7 @@ impl<'a> Watcher<'a> {
     }
 
     /// Deals with a message; an exit status if it was the last one.
-    fn take(&mut self, message: Message, cx: &mut Context<'_, '_>) -> Option<u8> {
+    fn take(&mut self, message: Message) -> Option<u8> {
         match message {
             Message::Touched(places) => {
                 let files = self.places.files_at(&places);
@@ -143,7 +189,16 @@ impl<'a> Watcher<'a> {
                     self.touch([path].into());
                 }
             }
-            Message::Ended(ran) => return self.ended(&ran, cx),
+            Message::Ended => return self.ended(),
+            Message::Asked => {
+                let wish = self.work.asked();
+                if wish.stop {
+                    self.stop();
+                }
+                if let Some(cause) = wish.again {
+                    (self.again, self.cause) = (true, cause);
+                }
+            }
             Message::Stop => return Some(INTERRUPTED),
         }
         None
@@ -165,26 +220,23 @@ impl<'a> Watcher<'a> {
     /// begins is another question.
     fn stop_if_stale(&mut self) {
         let unlooked = mem::take(&mut self.unlooked);
-        if let Some(control) = &self.running
+        if let Some(Running { control, .. }) = &self.running
             && !control.stop.load(Ordering::Relaxed)
             && let Some(changed) = self.places.changed_since_read(&unlooked)
         {
             control.stop.store(true, Ordering::Relaxed);
-            self.cause = changed;
+            self.cause = Cause::File(changed);
         }
     }
 
     fn stop(&self) {
-        if let Some(control) = &self.running {
+        if let Some(Running { control, .. }) = &self.running {
             control.stop.store(true, Ordering::Relaxed);
         }
     }
 
     /// Begins a run, if none is at work and there is a reason for one.
-    fn start_if_due<'s>(&mut self, scope: &'s Scope<'s, '_>)
-    where
-        'a: 's,
-    {
+    fn start_if_due(&mut self, scope: &'s Scope<'s, '_>) {
         if self.running.is_some() {
             return;
         }
@@ -192,7 +244,7 @@ impl<'a> Watcher<'a> {
         if is_due {
             let touched = mem::take(&mut self.touched);
             if let Some(changed) = self.places.changed(&touched) {
-                (self.again, self.cause) = (true, changed);
+                (self.again, self.cause) = (true, Cause::File(changed));
             }
         }
         // What is still going on is waited for also after a run was stopped.
@@ -209,49 +261,31 @@ impl<'a> Watcher<'a> {
                 let _ = post.send(Message::Read(path, content));
             })),
         });
-        self.running = Some(Arc::clone(&control));
-        let (session, live, post) = (self.session, self.live, self.post.clone());
-        scope.spawn(move || {
-            let ran = session.run(live, &control);
-            let _ = post.send(Message::Ended(Box::new(ran)));
+        let job = self.work.begin(&self.cause);
+        let (given, bell) = (Arc::clone(&control), Bell(self.post.clone()));
+        let thread = scope.spawn(move || {
+            let _bell = bell;
+            job(&given)
         });
+        self.running = Some(Running { control, thread });
     }
 
-    /// Shows what a run came to; an exit status if it was the last one.
-    fn ended(&mut self, ran: &Ran, cx: &mut Context<'_, '_>) -> Option<u8> {
-        self.running = None;
+    /// Deals with what a run came to; an exit status if it was the last one.
+    fn ended(&mut self) -> Option<u8> {
+        let running = self.running.take()?;
+        let ran = match running.thread.join() {
+            Ok(ran) => ran,
+            Err(panic) => std::panic::resume_unwind(panic),
+        };
         if interrupt::is_requested() {
             return Some(INTERRUPTED);
         }
-        if matches!(&ran.result, Ok(finished) if finished.stopped) {
-            self.again = true;
-            self.tell(&status::stopped(&self.cause, ran), cx);
+        if W::is_stopped(&ran) {
+            self.again |= self.work.stopped(&self.cause, ran);
             return None;
         }
         self.places.end();
-        let warning = self.session.cache_warning().filter(|_| !self.warned);
-        self.warned |= warning.is_some();
-        let status = details(self.args, ran, warning, cx);
-        if status == USAGE && self.is_first {
-            return Some(status);
-        }
-        self.tell(&status::status(&self.cause, ran), cx);
-        if self.args.report == ReportFormat::Json {
-            closing(self.args, ran, cx);
-        }
-        if self.is_first {
-            let files = count(self.places.dependencies.all().len(), "file");
-            self.tell(&format!("watching {files}; Ctrl-C ends\n"), cx);
-            self.is_first = false;
-        }
-        // Nobody reads the reports any more.
-        cx.console.has_lost_out().then_some(OK)
-    }
-
-    /// A line for people.
-    fn tell(&self, line: &str, cx: &mut Context<'_, '_>) {
-        if self.args.report == ReportFormat::Human {
-            cx.console.note(line);
-        }
+        let files = self.places.dependencies.all().len();
+        self.work.ended(&self.cause, ran, files)
     }
 }

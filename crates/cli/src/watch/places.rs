@@ -8,12 +8,12 @@ use std::time::{Duration, Instant};
 use tessgraph_geometry::digest::Digest;
 use tessgraph_graph::world::DiskWorld;
 
+use super::Watched;
 use super::content;
 use super::dependencies::Dependencies;
 use super::mailbox::Post;
 use super::notices::Notices;
 use super::stamps::{Stamps, look};
-use crate::commands::run::RunArgs;
 use crate::places::trail;
 
 /// How often every file is looked at where the system tells nothing.
@@ -40,15 +40,15 @@ pub(super) struct Places<'a> {
 
 impl<'a> Places<'a> {
     /// Watches the graph, whether it is there or not.
-    pub(super) fn new(args: &'a RunArgs, post: Post) -> Self {
-        let (notices, deaf) = match (args.poll, Notices::new(post)) {
+    pub(super) fn new(watched: &Watched<'a>, post: Post) -> Self {
+        let (notices, deaf) = match (watched.poll, Notices::new(post)) {
             (true, _) => (None, None),
             (false, Ok(notices)) => (Some(notices), None),
             (false, Err(reason)) => (None, Some(reason)),
         };
         let mut places = Self {
-            allowed: &args.engine.allow,
-            graph: std::path::absolute(&args.graph).unwrap_or_else(|_| args.graph.clone()),
+            allowed: watched.allowed,
+            graph: std::path::absolute(watched.graph).unwrap_or_else(|_| watched.graph.to_owned()),
             dependencies: Dependencies::default(),
             notices,
             deaf,

@@ -1,18 +1,17 @@
 //! One line for each run.
 
-use std::path::Path;
-
 use tessgraph_graph::Severity;
 
+use super::Cause;
 use crate::commands::run::{Finished, Ran, Stopped};
-use crate::outputs::{WrittenOutput, shown};
+use crate::outputs::WrittenOutput;
 use crate::report::{RunReport, summary};
 use crate::text::{count, printable, time_text};
 
 /// What became of a run that `cause` was the reason for: its outcomes, its
 /// milliseconds, and which outputs are new.
-pub(super) fn status(cause: &Path, ran: &Ran) -> String {
-    let cause = shown(cause);
+pub(super) fn status(cause: &Cause, ran: &Ran) -> String {
+    let cause = cause.text();
     match &ran.result {
         Ok(finished) => {
             let summary = summary(&RunReport {
@@ -39,9 +38,9 @@ pub(super) fn status(cause: &Path, ran: &Ran) -> String {
 }
 
 /// A run was stopped because `cause` changed.
-pub(super) fn stopped(cause: &Path, ran: &Ran) -> String {
+pub(super) fn stopped(cause: &Cause, ran: &Ran) -> String {
     let time = time_text(ran.ms);
-    format!("{}: changed, stopped after {time}\n", shown(cause))
+    format!("{}: changed, stopped after {time}\n", cause.text())
 }
 
 /// "wrote out/a.glb, out/a.json and 2 more".
