@@ -135,6 +135,25 @@ impl Plan {
         self.nodes.iter().position(|node| node.name == name)
     }
 
+    /// Which nodes these results need, themselves included; one entry per node.
+    pub fn needed(&self, results: impl IntoIterator<Item = ResultRef>) -> Vec<bool> {
+        let mut needed = vec![false; self.nodes.len()];
+        for result in results {
+            needed[result.node] = true;
+        }
+        // Nodes stand after those they depend on.
+        for index in (0..needed.len()).rev() {
+            if needed[index] {
+                for input in &self.nodes[index].inputs {
+                    for result in input.origin.results() {
+                        needed[result.node] = true;
+                    }
+                }
+            }
+        }
+        needed
+    }
+
     /// The spec of a result.
     pub fn result_spec(&self, result: ResultRef) -> &'static crate::node::OutputSpec {
         &self.nodes[result.node].spec.outputs[result.result]

@@ -3,9 +3,8 @@
 use std::borrow::Cow;
 
 use annotate_snippets::{Annotation, AnnotationKind, Group, Level, Origin, Renderer, Snippet};
-use tessgraph_graph::{Diagnostic, Label, Place, Severity};
+use tessgraph_graph::{Diagnostic, Label, Lines, Place, Severity};
 
-use super::position::Lines;
 use crate::console::Console;
 use crate::text::{count, printable};
 
@@ -37,6 +36,11 @@ pub(crate) fn print(console: &mut Console<'_>, diagnostics: &[Diagnostic]) {
             "and {more}; `check --message-format json` gives all of them\n\n"
         ));
     }
+}
+
+/// One diagnostic as plain text, without a line feed at the end.
+pub(crate) fn plain_text(diagnostic: &Diagnostic) -> String {
+    render(diagnostic, false)
 }
 
 /// One diagnostic as text, without a line feed at the end.

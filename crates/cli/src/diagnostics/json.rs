@@ -1,9 +1,8 @@
 //! Diagnostics for programs: one JSON object a line.
 
 use serde_json::{Value, json};
-use tessgraph_graph::{Diagnostic, Label, Severity};
+use tessgraph_graph::{Diagnostic, Label, Lines, Severity};
 
-use super::position::Lines;
 use crate::json::line;
 
 /// One object a line with `code`, `severity`, `message`, `file`, `line`,

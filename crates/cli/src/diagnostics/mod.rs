@@ -2,13 +2,12 @@
 
 mod human;
 mod json;
-mod position;
 
 use std::sync::Arc;
 
 use tessgraph_graph::{Diagnostic, Severity, Source};
 
-pub(crate) use human::print;
+pub(crate) use human::{plain_text, print};
 pub(crate) use json::lines;
 
 /// An error about a file as a whole, or about no file when `name` is empty.

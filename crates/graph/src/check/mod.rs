@@ -27,6 +27,7 @@ use std::rc::Rc;
 use std::sync::Arc;
 
 pub use overrides::WRONG_SETTING;
+pub(crate) use overrides::value_of;
 
 use crate::diagnostic::{Diagnostic, Source};
 use crate::document::{self, DeclaredInput, DeclaredKind, Document, Problems, Text};

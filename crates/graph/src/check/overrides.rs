@@ -33,6 +33,17 @@ pub(super) fn apply(params: &mut [Parameter], set: &[(String, String)], problems
     }
 }
 
+/// The value that a text stands for, as `--set` reads it.
+///
+/// # Errors
+/// In words, with a way out.
+pub(crate) fn value_of(param: &Parameter, text: &str) -> Result<Value, String> {
+    parse(param, text).map_err(|Refusal { message, help }| match help.as_str() {
+        "" => message,
+        help => format!("{message}; {help}"),
+    })
+}
+
 /// Why a value is refused, and a way out.
 struct Refusal {
     message: String,

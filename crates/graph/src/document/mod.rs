@@ -5,6 +5,7 @@
 //! `walk`, which only finds out where things are; a RON value carries no
 //! places by itself. Nothing here knows which kinds of node there are.
 
+pub mod edit;
 mod encoding;
 mod fields;
 mod foreign;

@@ -43,7 +43,7 @@ impl ParamKind {
     }
 
     /// How it is written.
-    pub(super) fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         KINDS
             .iter()
             .find(|(_, kind)| *kind == self)
@@ -77,6 +77,12 @@ pub(crate) struct Parameter {
     pub(crate) target: Target,
     /// The declaration.
     pub(crate) span: Range<usize>,
+    /// The value in it; `None` if it has none.
+    pub(crate) value_span: Option<Range<usize>>,
+    /// The smallest and the largest value as declared, in the file's units.
+    pub(crate) limits: (Option<f64>, Option<f64>),
+    /// What it means, in the author's words.
+    pub(crate) about: String,
 }
 
 impl Parameter {

@@ -167,13 +167,14 @@ impl Reader<'_> {
         }
     }
 
-    fn about(&mut self, about: Option<&Item>) {
-        if let Some(about) = about
-            && about.text(self.text).is_none()
-        {
+    fn about(&mut self, about: Option<&Item>) -> Option<String> {
+        let about = about?;
+        let text = about.text(self.text).map(|text| text.value);
+        if text.is_none() {
             let message = format!("`about` takes a text, not {}", about.label(self.text));
             self.report("wrong_kind", &about.span, message, "write it in quotes");
         }
+        text
     }
 
     /// `"smooth": 20` is a parameter whose value says its kind.
@@ -201,6 +202,7 @@ impl Reader<'_> {
         };
         let mut param = self.empty(name, kind, item, Quantity::Number, (None, None));
         param.value = self.value(&param, item);
+        param.value_span = Some(item.span.clone());
         Some(param)
     }
 
@@ -224,6 +226,9 @@ impl Reader<'_> {
             choices: Vec::new(),
             target: Target::of_parameter(&name.value, scalar, quantity, self.units, range),
             span: item.span.clone(),
+            value_span: None,
+            limits: range,
+            about: String::new(),
             name: name.clone(),
         }
     }
@@ -258,12 +263,15 @@ impl Reader<'_> {
         let quantity = field("unit").map_or(Quantity::Number, |unit| self.quantity(unit));
         let range = self.range(field("min"), field("max"));
         let mut param = self.empty(name, kind, item, quantity, range);
-        self.about(field("about"));
+        param.about = self.about(field("about")).unwrap_or_default();
         if kind == ParamKind::Choice {
             param.choices = self.choices(field("of"), item);
         }
         match field("default") {
-            Some(default) => param.value = self.value(&param, default),
+            Some(default) => {
+                param.value = self.value(&param, default);
+                param.value_span = Some(default.span.clone());
+            }
             None if default_needed => {
                 let message = format!("the parameter `{}` has no default", shown(&name.value));
                 self.report("missing_input", &item.span, message, "add `default: ...`");

@@ -14,7 +14,7 @@ use tessgraph_geometry::digest::Digest;
 use tessgraph_geometry::{Directions, Field, Mesh};
 
 pub(crate) use payload::list_digest;
-pub use payload::{Payload, six_digits};
+pub use payload::{Payload, plain_number, six_digits};
 pub use ports::{ChoiceSpec, FilePath, InputDefault, InputType, OutputType};
 pub use report::{Report, ReportEntry, Scalar};
 pub use stored::Stored;

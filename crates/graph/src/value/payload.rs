@@ -223,6 +223,33 @@ fn range_summary(values: impl Iterator<Item = f64>) -> String {
     )
 }
 
+/// The shortest decimal within 10⁻¹⁰ of the number, relative and absolute at
+/// once: what a person would have written, without the dust of arithmetic.
+///
+/// ```
+/// assert_eq!(tessgraph_graph::plain_number(0.1 + 0.02), "0.12");
+/// assert_eq!(tessgraph_graph::plain_number(5_000_000.1234), "5000000.1234");
+/// assert_eq!(tessgraph_graph::plain_number(1.0 / 3.0), "0.33333333333");
+/// assert_eq!(tessgraph_graph::plain_number(-0.0), "0");
+/// assert_eq!(tessgraph_graph::plain_number(1.5e-9), "1.5e-9");
+/// ```
+pub fn plain_number(number: f64) -> String {
+    if number == 0.0 || !number.is_finite() {
+        return (number + 0.0).to_string();
+    }
+    let near = 1e-10 * number.abs().min(1.0);
+    let rounded = (0..17).find_map(|digits| {
+        let rounded: f64 = format!("{number:.digits$e}").parse().ok()?;
+        ((rounded - number).abs() <= near).then_some(rounded)
+    });
+    let rounded = rounded.unwrap_or(number);
+    if (1e-5..1e15).contains(&rounded.abs()) {
+        format!("{rounded}")
+    } else {
+        format!("{rounded:e}")
+    }
+}
+
 /// A number to six significant digits, with -0 as 0: how results are shown.
 ///
 /// ```

@@ -3,21 +3,24 @@
 use std::ops::Range;
 
 /// Where the lines of a text begin: many offsets are found in one text.
-pub(super) struct Lines<'a> {
+#[derive(Debug)]
+pub struct Lines<'a> {
     text: &'a str,
     starts: Vec<usize>,
 }
 
 /// A line and a column, both from 1; columns count characters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Position {
-    pub(super) line: usize,
-    pub(super) column: usize,
+pub struct Position {
+    /// The line.
+    pub line: usize,
+    /// The column.
+    pub column: usize,
 }
 
 impl<'a> Lines<'a> {
-    /// Cost: O(text), once.
-    pub(super) fn of(text: &'a str) -> Self {
+    /// The lines of `text`. Cost: O(text), once.
+    pub fn of(text: &'a str) -> Self {
         let feeds = text.bytes().enumerate().filter(|(_, byte)| *byte == b'\n');
         let starts = std::iter::once(0)
             .chain(feeds.map(|(at, _)| at + 1))
@@ -25,8 +28,8 @@ impl<'a> Lines<'a> {
         Self { text, starts }
     }
 
-    /// Cost: O(line).
-    pub(super) fn position(&self, offset: usize) -> Position {
+    /// Where `offset` is; offsets outside the text are at its end. Cost: O(line).
+    pub fn position(&self, offset: usize) -> Position {
         let offset = self.boundary(offset);
         let line = self.starts.partition_point(|&start| start <= offset);
         let column = self.text[self.starts[line - 1]..offset].chars().count() + 1;
@@ -34,7 +37,7 @@ impl<'a> Lines<'a> {
     }
 
     /// The bytes of the lines that `span` touches, and the number of the first.
-    pub(super) fn around(&self, span: &Range<usize>) -> (Range<usize>, usize) {
+    pub fn around(&self, span: &Range<usize>) -> (Range<usize>, usize) {
         let first = self
             .starts
             .partition_point(|&start| start <= self.boundary(span.start));
@@ -46,13 +49,16 @@ impl<'a> Lines<'a> {
         (start..end, first)
     }
 
-    /// The text of some bytes that lie between characters.
-    pub(super) fn text(&self, bytes: Range<usize>) -> &'a str {
+    /// The text of some bytes.
+    ///
+    /// # Panics
+    /// If they lie outside the text, or not between characters.
+    pub fn text(&self, bytes: Range<usize>) -> &'a str {
         &self.text[bytes]
     }
 
     /// `span` inside the text and between characters.
-    pub(super) fn valid(&self, span: &Range<usize>) -> Range<usize> {
+    pub fn valid(&self, span: &Range<usize>) -> Range<usize> {
         let start = self.boundary(span.start);
         start..self.boundary(span.end).max(start)
     }
@@ -84,7 +90,7 @@ mod tests {
     #[test]
     fn agrees_with_the_engine() {
         let text = "a\nßé\r\n\nend";
-        let source = tessgraph_graph::Source::new("x", text);
+        let source = crate::Source::new("x", text);
         for offset in 0..text.len() + 3 {
             let Position { line, column } = Lines::of(text).position(offset);
             assert_eq!((line, column), source.position(offset), "at {offset}");
