@@ -112,6 +112,7 @@ static IMPURE: &[NodeSpec] = &[NodeSpec {
         doc: "The count.",
         kind: Kind::Integer,
         quantity: Quantity::Number,
+        faults: None,
     }],
     eval: |_, _| Ok(vec![Value::Integer(CALLS.fetch_add(1, Ordering::Relaxed))]),
 }];

@@ -103,6 +103,8 @@ pub(crate) struct Options {
     pub(crate) free: Vec<TokenStream>,
     pub(crate) attributes: bool,
     pub(crate) only_with: Option<(Ident, Vec<Ident>)>,
+    /// A count of faults, and the input without which it counts none.
+    pub(crate) faults: Option<Option<Ident>>,
 }
 
 impl Options {
@@ -124,6 +126,10 @@ impl Options {
             "max" => self.max = Some(meta.value()?.parse()?),
             "unit" => self.quantity = Some(quantity(&meta.value()?.parse()?)?),
             "attributes" => self.attributes = true,
+            "faults" if meta.input.peek(Token![=]) => {
+                self.faults = Some(Some(meta.value()?.parse()?));
+            }
+            "faults" => self.faults = Some(None),
             "free" => meta.parse_nested_meta(|name| {
                 let Some(ident) = name.path.get_ident() else {
                     return Err(name.error("a name"));

@@ -46,13 +46,22 @@ pub(crate) fn expand(item: &DeriveInput) -> Result<TokenStream> {
 fn spec(ident: &Ident, field: &Field) -> Result<TokenStream> {
     let doc = attributes::doc(&field.attrs, ident.span(), "a result")?;
     let (name, ty) = (ident.to_string(), &field.ty);
-    let quantity = Options::read(&field.attrs, "output")?.quantity();
+    let options = Options::read(&field.attrs, "output")?;
+    let quantity = options.quantity();
+    let faults = match options.faults {
+        None => quote!(::std::option::Option::None),
+        Some(without) => {
+            let without = without.iter().map(Ident::to_string);
+            quote!(::std::option::Option::Some(&[#(#without),*]))
+        }
+    };
     Ok(quote! {
         ::tessgraph_graph::node::OutputSpec {
             name: #name,
             doc: #doc,
             kind: <#ty as ::tessgraph_graph::value::OutputType>::KIND,
             quantity: #quantity,
+            faults: #faults,
         }
     })
 }

@@ -54,6 +54,7 @@ pub(crate) enum Between {
 #[outputs(report)]
 pub(crate) struct Crossings {
     /// Pairs of faces that cross.
+    #[output(faults)]
     pairs: usize,
     /// Pairs of components with faces that cross.
     component_pairs: usize,

@@ -62,6 +62,7 @@ pub(crate) struct Flatness {
     #[output(unit = length)]
     warp: f64,
     /// Faces above the limit; 0 if none is given.
+    #[output(faults = limit)]
     above: usize,
     /// The face with the largest distance by the chosen convention.
     worst_face: usize,

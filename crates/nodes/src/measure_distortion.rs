@@ -51,6 +51,7 @@ pub(crate) struct Changes {
     #[output(unit = angle)]
     mean_angle_change: f64,
     /// Components that are folded over somewhere or inside out.
+    #[output(faults)]
     inverted: usize,
     /// Largest change of an edge length in each face's component.
     field: Arc<Field>,

@@ -63,6 +63,9 @@ pub struct OutputSpec {
     pub kind: Kind,
     /// What its numbers measure.
     pub quantity: Quantity,
+    /// For a count of faults, which ought to be 0: the inputs without which it
+    /// counts none. `None` for everything else.
+    pub faults: Option<&'static [&'static str]>,
 }
 
 /// The inputs of a node, derived from the struct that holds them.
@@ -148,6 +151,7 @@ impl<T: OutputType> Outputs for T {
         doc: "The result.",
         kind: T::KIND,
         quantity: Quantity::Number,
+        faults: None,
     }];
 
     fn into_values(self) -> Vec<Value> {
@@ -196,6 +200,7 @@ pub const REPORT: OutputSpec = OutputSpec {
     doc: "All the numbers below as one report.",
     kind: Kind::Report,
     quantity: Quantity::Number,
+    faults: None,
 };
 
 /// The report of a node's scalar results, put before them: for results that

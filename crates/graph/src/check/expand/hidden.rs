@@ -43,6 +43,7 @@ macro_rules! inputs {
                 doc: "The value.",
                 kind: Kind::$kind,
                 quantity: Quantity::$quantity,
+                faults: None,
             }];
             NodeSpec {
                 name: "Input",
@@ -104,6 +105,7 @@ pub(super) static JOIN: NodeSpec = NodeSpec {
         doc: "All of them, one after the other.",
         kind: Kind::Mesh,
         quantity: Quantity::Number,
+        faults: None,
     }],
     eval: join_meshes,
 };
@@ -136,6 +138,7 @@ macro_rules! lists {
                 doc: "The list.",
                 kind: Kind::List(&Kind::$kind),
                 quantity: Quantity::$quantity,
+                faults: None,
             }];
             NodeSpec {
                 name: "List",

@@ -36,6 +36,7 @@ const fn output(name: &'static str, kind: Kind, quantity: Quantity) -> OutputSpe
         doc: "A result.",
         kind,
         quantity,
+        faults: None,
     }
 }
 
