@@ -25,4 +25,5 @@ mod study;
 mod support;
 mod tidy;
 mod timings;
+mod view;
 mod watch;

@@ -62,6 +62,10 @@ fn dependencies_point_one_way() {
             ],
         ),
         (
+            "tessgraph-view",
+            vec!["tessgraph-geometry", "tessgraph-graph"],
+        ),
+        (
             "tessgraph",
             vec![
                 "tessgraph-geometry",
@@ -69,6 +73,7 @@ fn dependencies_point_one_way() {
                 "tessgraph-io",
                 "tessgraph-nodes",
                 "tessgraph-pages",
+                "tessgraph-view",
             ],
         ),
     ]);
@@ -161,6 +166,12 @@ fn specs_are_sound() {
             "{}: {first}",
             spec.name
         );
+        for output in spec.outputs {
+            let faults = output.faults.unwrap_or_default();
+            let is_count = output.kind == tessgraph_graph::Kind::Integer;
+            assert!(output.faults.is_none() || is_count, "{}", output.name);
+            assert!(faults.iter().all(|name| spec.input(name).is_some()));
+        }
         for input in spec.inputs {
             let place = format!("{}.{}", spec.name, input.name);
             assert!(is_name(input.name), "{place}");

@@ -1,5 +1,6 @@
 //! What the tests share: running graphs in memory and looking at results.
 
+pub(crate) mod page;
 pub(crate) mod program;
 
 use std::path::{Path, PathBuf};

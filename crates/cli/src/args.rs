@@ -14,6 +14,7 @@ use crate::commands::new::NewArgs;
 use crate::commands::nodes::NodesArgs;
 use crate::commands::run::RunArgs;
 use crate::commands::study::StudyArgs;
+use crate::commands::view::ViewArgs;
 
 /// Node-graph procedural modelling for architectural tessellation
 #[derive(Debug, Parser)]
@@ -33,6 +34,7 @@ pub(crate) struct Cli {
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
     Run(RunArgs),
+    View(ViewArgs),
     Study(StudyArgs),
     Check(CheckArgs),
     Nodes(NodesArgs),

@@ -84,6 +84,7 @@ where
     };
     let status = match &cli.command {
         Command::Run(args) => commands::run::run(args, &mut cx),
+        Command::View(args) => commands::view::view(args, &mut cx),
         Command::Study(args) => commands::study::study(args, &mut cx),
         Command::Check(args) => commands::check::check(args, &mut cx),
         Command::Nodes(args) => commands::nodes::nodes(args, &mut cx),

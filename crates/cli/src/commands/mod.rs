@@ -10,6 +10,7 @@ pub(crate) mod new;
 pub(crate) mod nodes;
 pub(crate) mod run;
 pub(crate) mod study;
+pub(crate) mod view;
 
 use std::path::PathBuf;
 

@@ -123,7 +123,7 @@ pub(crate) struct Edge {
 impl Picture {
     /// The picture of a plan; `costs` are those of the last run, one per node.
     pub(crate) fn new(title: &str, plan: &Plan, costs: &[Option<NodeCost>]) -> Self {
-        let needed = needed(plan);
+        let needed = plan.needed(plan.outputs.iter().map(|output| output.result));
         let mut boxes = parameters(plan);
         let first = boxes.len();
         let mut labels: BTreeMap<(usize, usize), BTreeSet<String>> = BTreeMap::new();
@@ -175,25 +175,6 @@ fn of_result(plan: &Plan, result: ResultRef) -> String {
         0 => String::new(),
         _ => format!(" ({})", plan.result_spec(result).name),
     }
-}
-
-/// Which nodes the outputs need.
-fn needed(plan: &Plan) -> Vec<bool> {
-    let mut needed = vec![false; plan.nodes.len()];
-    for output in &plan.outputs {
-        needed[output.result.node] = true;
-    }
-    // Nodes stand after those they depend on.
-    for index in (0..needed.len()).rev() {
-        if needed[index] {
-            for input in &plan.nodes[index].inputs {
-                for result in input.origin.results() {
-                    needed[result.node] = true;
-                }
-            }
-        }
-    }
-    needed
 }
 
 fn parameters(plan: &Plan) -> Vec<Item> {

@@ -80,7 +80,7 @@ pub(crate) trait Work<'a> {
 /// What somebody wants of the run at work and the next one.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub(crate) struct Wish {
-    /// The run at work stops.
+    /// The run at work stops, and without a reason for another none takes place.
     pub(crate) stop: bool,
     /// Another one takes place, for this reason.
     pub(crate) again: Option<Cause>,
@@ -195,8 +195,9 @@ impl<'s, 'a: 's, W: Work<'a>> Watcher<'s, 'a, W> {
                 if wish.stop {
                     self.stop();
                 }
-                if let Some(cause) = wish.again {
-                    (self.again, self.cause) = (true, cause);
+                match wish.again {
+                    Some(cause) => (self.again, self.cause) = (true, cause),
+                    None => self.again &= !wish.stop,
                 }
             }
             Message::Stop => return Some(INTERRUPTED),

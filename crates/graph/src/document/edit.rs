@@ -100,10 +100,12 @@ impl Declarations {
             return Ok(None);
         }
         let old = &self.source.text()[declaration.span.clone()];
-        Ok(Some(Edit {
+        let new = declaration.literal(&value);
+        // Another number, but not one that a person would tell from it.
+        Ok((new != old).then(|| Edit {
             start: self.before + declaration.span.start,
             old: old.to_owned(),
-            new: declaration.literal(&value),
+            new,
         }))
     }
 }

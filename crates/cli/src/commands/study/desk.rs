@@ -185,7 +185,7 @@ impl Desk {
 }
 
 /// Where results go unless another folder is named.
-fn default_out(study: &Path) -> PathBuf {
+pub(crate) fn default_out(study: &Path) -> PathBuf {
     folder_of(study)
         .join("out")
         .join(study.file_stem().unwrap_or_default())

@@ -8,7 +8,7 @@ mod record;
 mod table;
 mod told;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use tessgraph_graph::study::Variant;
@@ -28,6 +28,14 @@ use crate::atomic::write_if_changed;
 use crate::diagnostics::{print, without_place};
 use crate::interrupt::{self, INTERRUPTED};
 use crate::text::{count, printable};
+
+/// The table's name in the folder of results.
+const TABLE: &str = "results.csv";
+
+/// Where the table of a study is, unless another folder was named.
+pub(crate) fn table_of(study: &Path) -> PathBuf {
+    desk::default_out(study).join(TABLE)
+}
 
 /// Carries the command out.
 pub(crate) fn study(args: &StudyArgs, cx: &mut Context<'_, '_>) -> u8 {
@@ -206,7 +214,7 @@ fn tabulate(desk: &Desk, from: &[std::path::PathBuf]) -> Result<bool, String> {
             "{missing} of {all} variants are not there, or not of these files"
         ));
     };
-    let path = desk.out.join("results.csv");
+    let path = desk.out.join(TABLE);
     write_if_changed(&path, table::csv(desk, &records).as_bytes())
         .map_err(|error| format!("cannot write {}: {error}", path.display()))?;
     Ok(records.iter().all(|record| record.error.is_none()))
@@ -224,7 +232,7 @@ fn collect(args: &CollectArgs, cx: &mut Context<'_, '_>) -> u8 {
     };
     match tabulate(&desk, &args.from) {
         Ok(sound) => {
-            let path = desk.out.join("results.csv");
+            let path = desk.out.join(TABLE);
             let variants = count(desk.variants.list.len(), "variant");
             let note = format!("{variants} in {}\n", path.display());
             cx.console.note(&printable(&note));

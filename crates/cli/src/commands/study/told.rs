@@ -6,6 +6,7 @@ use serde_json::{Map, Value as Json, json};
 use tessgraph_graph::Diagnostic;
 use tessgraph_graph::study::Variant;
 
+use super::TABLE;
 use super::desk::Desk;
 use super::make::as_json;
 use super::record::Record;
@@ -146,10 +147,7 @@ impl<'a> Told<'a> {
             text.push_str(&format!("{repeated} equal to others left out\n"));
         }
         if written {
-            text.push_str(&format!(
-                "{}\n",
-                self.desk.out.join("results.csv").display()
-            ));
+            text.push_str(&format!("{}\n", self.desk.out.join(TABLE).display()));
         } else {
             text.push_str("`tessgraph study collect` makes the table when all shards are done\n");
         }
@@ -167,7 +165,7 @@ impl<'a> Told<'a> {
             .iter()
             .map(|done| self.variant_json(done))
             .collect();
-        let table = self.desk.out.join("results.csv");
+        let table = self.desk.out.join(TABLE);
         let report = json!({
             "ok": ok,
             "ms": number((ms * 1000.0).round() / 1000.0),

@@ -1,0 +1,33 @@
+//! What `view` is asked for.
+
+use std::net::{IpAddr, Ipv4Addr};
+use std::path::PathBuf;
+
+use clap::Args;
+
+use crate::args::{Setting, setting};
+use crate::commands::engine::EngineArgs;
+
+/// Shows a graph in the browser while it is edited
+#[derive(Debug, Args)]
+pub(crate) struct ViewArgs {
+    /// The graph file
+    pub(crate) graph: PathBuf,
+    /// The port of the page's address, 0 for any; if left out the first free one from 8137 on
+    #[arg(long, value_name = "N")]
+    pub(crate) port: Option<u16>,
+    /// The address that is listened on; others than this machine's own let others look
+    #[arg(long, value_name = "ADDRESS", default_value_t = IpAddr::V4(Ipv4Addr::LOCALHOST))]
+    pub(crate) host: IpAddr,
+    /// Only prints the page's address, instead of opening it
+    #[arg(long)]
+    pub(crate) no_open: bool,
+    /// Looks for changes twice a second, where the system tells of none: on network drives
+    #[arg(long)]
+    pub(crate) poll: bool,
+    /// Holds a parameter at another value
+    #[arg(long, value_name = "NAME=VALUE", value_parser = setting)]
+    pub(crate) set: Vec<Setting>,
+    #[command(flatten)]
+    pub(crate) engine: EngineArgs,
+}

@@ -1,0 +1,133 @@
+//! `view`: the live page of a graph.
+//!
+//! It shows, and writes only the one value of the graph file that somebody has
+//! changed on the page. Outputs are made by `run`.
+
+mod args;
+mod asked;
+mod edits;
+mod problems;
+mod requests;
+mod secret;
+mod studio;
+mod study;
+mod viewer;
+
+pub(crate) use args::ViewArgs;
+
+use std::sync::Arc;
+
+use tessgraph_view::{Address, Buffers, Desk, Hub, Server};
+
+use super::{Context, FAILED, USAGE, status};
+use crate::diagnostics::print;
+use crate::graph_file::GraphFile;
+use crate::interrupt;
+use crate::watch::{Mailbox, Message, Watched, follow};
+use requests::Requests;
+use studio::Studio;
+use viewer::Viewer;
+
+/// The share of the cache's memory that buffers nobody names any more may take.
+const BUFFER_SHARE: u64 = 4;
+
+/// Carries the command out.
+pub(crate) fn view(args: &ViewArgs, cx: &mut Context<'_, '_>) -> u8 {
+    if let Some(status) = wrong_settings(args, cx) {
+        return status;
+    }
+    let studio = match Studio::new(args, cx.registry, cx.cache.as_deref()) {
+        Ok(studio) => studio,
+        Err(message) => {
+            let help = Some("ask for fewer with `--threads`".to_owned());
+            return cx.fail(FAILED, "threads", message, help);
+        }
+    };
+    let mailbox = Mailbox::new();
+    let post = mailbox.post();
+    interrupt::on_request(move || {
+        // Nobody may be listening any more.
+        let _ = post.send(Message::Stop);
+    });
+    let budget = usize::try_from(studio.memory() / BUFFER_SHARE).unwrap_or(usize::MAX);
+    let (hub, buffers) = (Arc::new(Hub::default()), Arc::new(Buffers::new(budget)));
+    let requests = Arc::new(Requests::new(mailbox.post()));
+    let taking = Arc::clone(&requests);
+    let desk = Desk {
+        hub: Arc::clone(&hub),
+        buffers: Arc::clone(&buffers),
+        ask: Arc::new(move |asking| taking.put(asking)),
+    };
+    // Told before anybody can ask.
+    let viewer = Viewer::new(args, &studio, requests, hub, buffers);
+    let server = match serve(args, cx, desk) {
+        Ok(server) => server,
+        Err(status) => return status,
+    };
+    announce(args, &server, cx);
+    let watched = Watched {
+        graph: &args.graph,
+        allowed: &args.engine.allow,
+        poll: args.poll,
+    };
+    let status = follow(&watched, false, &mailbox, viewer);
+    drop(server);
+    studio.close();
+    status
+}
+
+/// The exit status, if the graph takes no such values as the command line gives.
+/// Whatever else is wrong with it, the page will show.
+fn wrong_settings(args: &ViewArgs, cx: &mut Context<'_, '_>) -> Option<u8> {
+    if args.set.is_empty() {
+        return None;
+    }
+    let opened = GraphFile::open(&args.graph, cx.registry, &args.set, &args.engine.allow);
+    let diagnostics = opened.err().filter(|found| status(found) == USAGE)?;
+    print(cx.console, &diagnostics);
+    Some(USAGE)
+}
+
+/// Starts the server, or says why not.
+fn serve(args: &ViewArgs, cx: &mut Context<'_, '_>, desk: Desk) -> Result<Server, u8> {
+    let address = Address {
+        host: args.host,
+        port: args.port,
+    };
+    let started = secret::chosen(&args.graph, cx.cache.as_deref())
+        .and_then(|token| Server::start(address, token, desk));
+    started.map_err(|error| {
+        let (message, help) = match args.port {
+            Some(port) if error.kind() == std::io::ErrorKind::AddrInUse => (
+                format!("port {port} is taken"),
+                "name another one, or leave `--port` out to have a free one found".to_owned(),
+            ),
+            _ => (
+                format!("cannot serve the page on {}: {error}", args.host),
+                "free ports are looked for from 8137 on; name another one with `--port`".to_owned(),
+            ),
+        };
+        cx.fail(FAILED, "no_server", message, Some(help))
+    })
+}
+
+/// Says where the page is, and opens it.
+fn announce(args: &ViewArgs, server: &Server, cx: &mut Context<'_, '_>) {
+    if !args.host.is_loopback() {
+        let warning = format!(
+            "warning: the page can be reached from other machines at {}; whoever has its address \
+             can look, and nobody can change anything\n",
+            server.address()
+        );
+        cx.console.note(&warning);
+    }
+    let url = server.url();
+    cx.console.data(&format!("{url}\n"));
+    if !args.no_open
+        && let Err(error) = open::that_detached(&url)
+    {
+        let note = format!("note: no browser could be opened: {error}; open the address above\n");
+        cx.console.note(&note);
+    }
+    cx.console.note("the page follows the graph; Ctrl-C ends\n");
+}

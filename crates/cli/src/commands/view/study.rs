@@ -1,0 +1,123 @@
+//! The table of a study of the graph that is shown, if there is one.
+
+use std::path::{Path, PathBuf};
+
+use tessgraph_graph::study::Study;
+use tessgraph_graph::world::read_plain;
+use tessgraph_view::protocol::{self, Value};
+
+use crate::commands::study::table_of;
+use crate::graph_file::{LARGEST_GRAPH, folder_of};
+use crate::places::is_same_file;
+
+/// Bytes of a table that the page can show.
+const LARGEST_TABLE: u64 = 16 << 20;
+
+/// Files that are looked at: folders with more are no folders of studies.
+const MOST_FILES: usize = 1000;
+
+/// The folders studies are looked for in, from the graph's.
+const FOLDERS: [&str; 2] = ["", "studies"];
+
+/// The newest table of a study of the graph: of studies beside it, or in the
+/// folder `studies` there.
+pub(super) fn find(graph: &Path) -> Option<protocol::Study> {
+    let folder = folder_of(graph);
+    let files = FOLDERS.iter().flat_map(|name| files_in(&folder.join(name)));
+    let tables = files.filter_map(|file| {
+        let bytes = read_plain(&file, LARGEST_GRAPH).ok()?;
+        let study = Study::read(&file.to_string_lossy(), &bytes).ok()?;
+        let of = folder_of(&file).join(study.graph());
+        let table = table_of(&file);
+        let changed = table.metadata().ok()?.modified().ok()?;
+        is_same_file(&of, graph).then_some((changed, table))
+    });
+    let (_, table) = tables.max()?;
+    let bytes = read_plain(&table, LARGEST_TABLE).ok()?;
+    let (columns, rows) = parse(&bytes)?;
+    let below = table.strip_prefix(&folder).unwrap_or(&table);
+    Some(protocol::Study {
+        path: below.to_string_lossy().into_owned(),
+        columns,
+        rows,
+    })
+}
+
+/// The graphs and studies of a folder.
+fn files_in(folder: &Path) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    let files = entries.map(|entry| entry.path()).filter(|path| {
+        path.extension()
+            .is_some_and(|extension| extension.eq_ignore_ascii_case("ron"))
+    });
+    files.take(MOST_FILES).collect()
+}
+
+type Rows = Vec<Vec<Option<Value>>>;
+
+/// The headings and rows of a table as `study` writes it.
+fn parse(bytes: &[u8]) -> Option<(Vec<String>, Rows)> {
+    let mut reader = csv::Reader::from_reader(bytes);
+    let columns = reader.headers().ok()?.iter().map(str::to_owned).collect();
+    let rows = reader.records().map(|record| {
+        let record = record.ok()?;
+        Some(record.iter().map(cell).collect())
+    });
+    Some((columns, rows.collect::<Option<Rows>>()?))
+}
+
+/// A cell; `None` for an empty one.
+fn cell(text: &str) -> Option<Value> {
+    let number = text.parse::<f64>().ok().filter(|number| number.is_finite());
+    match number {
+        _ if text.is_empty() => None,
+        Some(number) => Some(Value::Number(number)),
+        None => Some(Value::Text(text.to_owned())),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tables_are_read_with_their_kinds() {
+        let text = "id,n,note,error\na1,3,\"x, \"\"y\"\"\",\nb2,0.5,true,no\n";
+        let (columns, rows) = parse(text.as_bytes()).unwrap();
+        assert_eq!(columns, ["id", "n", "note", "error"]);
+        let word = |text: &str| Some(Value::Text(text.to_owned()));
+        let number = |number| Some(Value::Number(number));
+        assert_eq!(rows[0], [word("a1"), number(3.0), word("x, \"y\""), None]);
+        assert_eq!(rows[1], [word("b2"), number(0.5), word("true"), word("no")]);
+        assert!(parse(b"a,b\n1\n").is_none());
+    }
+
+    #[test]
+    fn the_study_of_this_graph_is_found_and_no_other() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        for name in ["out/other", "studies/out/mine"] {
+            std::fs::create_dir_all(at(name)).unwrap();
+            std::fs::write(at(name).join("results.csv"), format!("id\n{name}\n")).unwrap();
+        }
+        let study = |graph: &str| {
+            format!(
+                "Study(version: 1, graph: \"{graph}\", axes: {{\"n\": Values(of: [1])}}, keep: [])"
+            )
+        };
+        std::fs::write(at("g.ron"), "").unwrap();
+        std::fs::write(at("h.ron"), "").unwrap();
+        std::fs::write(at("other.ron"), study("h.ron")).unwrap();
+        std::fs::write(at("studies/mine.ron"), study("../g.ron")).unwrap();
+        let found = find(&at("g.ron")).unwrap();
+        assert_eq!(
+            Path::new(&found.path),
+            Path::new("studies/out/mine/results.csv")
+        );
+        assert_eq!(
+            found.rows,
+            [[Some(Value::Text("studies/out/mine".to_owned()))]]
+        );
+        assert!(find(&at("studies/mine.ron")).is_none());
+    }
+}

@@ -1,0 +1,224 @@
+//! Raw buffers by name: what the 3D view draws, each made once.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use axum::body::Bytes;
+use bytemuck::NoUninit;
+use tessgraph_geometry::digest::{Digest, Hasher};
+
+use crate::protocol::BufferName;
+
+/// Makes a buffer when it is first asked for.
+type Make = Arc<dyn Fn() -> Bytes + Send + Sync>;
+
+/// The buffers of the last messages.
+///
+/// Those that the latest message names are kept, and of older ones as many as
+/// fit into the budget, for a page that is still fetching them or a value that
+/// comes back.
+pub struct Buffers {
+    budget: usize,
+    store: Mutex<Store>,
+}
+
+#[derive(Default)]
+struct Store {
+    blobs: BTreeMap<Digest, Blob>,
+    /// Buffers named by what they were made from, where content names them.
+    made: BTreeMap<Digest, Digest>,
+    /// How many messages there were.
+    clock: u64,
+}
+
+struct Blob {
+    content: Content,
+    bytes: usize,
+    /// The message that named it last.
+    used: u64,
+}
+
+#[derive(Clone)]
+enum Content {
+    Made(Bytes),
+    Awaited(Make),
+}
+
+/// Owns an array of numbers as bytes, without copying it.
+struct Owned<T>(Vec<T>);
+
+impl<T: NoUninit> AsRef<[u8]> for Owned<T> {
+    fn as_ref(&self) -> &[u8] {
+        bytemuck::cast_slice(&self.0)
+    }
+}
+
+/// Numbers as bytes; they must be little-endian already.
+pub(crate) fn bytes<T: NoUninit + Send + Sync>(numbers: Vec<T>) -> Bytes {
+    Bytes::from_owner(Owned(numbers))
+}
+
+impl Buffers {
+    /// A store that keeps up to `budget` bytes of buffers nobody names any more.
+    pub fn new(budget: usize) -> Self {
+        let store = Mutex::default();
+        Self { budget, store }
+    }
+
+    /// The buffer of that name, made now if it was not before.
+    pub(crate) fn get(&self, name: Digest) -> Option<Bytes> {
+        let content = self.store().blobs.get(&name)?.content.clone();
+        let make = match content {
+            Content::Made(bytes) => return Some(bytes),
+            Content::Awaited(make) => make,
+        };
+        // Not under the lock: making it may take a while, or the thread pool.
+        let bytes = make();
+        if let Some(blob) = self.store().blobs.get_mut(&name) {
+            blob.content = Content::Made(bytes.clone());
+        }
+        Some(bytes)
+    }
+
+    /// A buffer that is made from what `source` is the digest of, named by its
+    /// own content: equal ones have one name, whatever they were made from.
+    pub(crate) fn made(&self, source: Digest, make: impl FnOnce() -> Bytes) -> (BufferName, usize) {
+        if let Some(found) = self.touch_made(source) {
+            return found;
+        }
+        let content = make();
+        let (name, length) = (Digest::of(&content), content.len());
+        let mut store = self.store();
+        store.made.insert(source, name);
+        store.keep(name, length, Content::Made(content));
+        (BufferName(name), length)
+    }
+
+    /// A buffer of `length` bytes that is made when somebody asks for it, named
+    /// by what it is made from.
+    pub(crate) fn awaited(
+        &self,
+        source: Digest,
+        length: usize,
+        make: impl Fn() -> Bytes + Send + Sync + 'static,
+    ) -> BufferName {
+        self.store()
+            .keep(source, length, Content::Awaited(Arc::new(make)));
+        BufferName(source)
+    }
+
+    /// A message was sent that names `named`; lets older buffers go.
+    pub(crate) fn sent(&self, named: &BTreeSet<BufferName>) {
+        let mut store = self.store();
+        store.clock += 1;
+        let clock = store.clock;
+        for name in named {
+            if let Some(blob) = store.blobs.get_mut(&name.0) {
+                blob.used = clock;
+            }
+        }
+        let mut older: Vec<(u64, Digest, usize)> = store
+            .blobs
+            .iter()
+            .filter(|(_, blob)| blob.used < clock)
+            .map(|(name, blob)| (blob.used, *name, blob.bytes))
+            .collect();
+        older.sort_by(|one, other| other.cmp(one));
+        let mut kept = 0;
+        for (_, name, bytes) in older {
+            kept += bytes;
+            if kept > self.budget {
+                store.blobs.remove(&name);
+            }
+        }
+        let Store { blobs, made, .. } = &mut *store;
+        made.retain(|_, name| blobs.contains_key(name));
+    }
+
+    /// Bytes of all buffers that are there or may be asked for.
+    pub fn total(&self) -> usize {
+        self.store().blobs.values().map(|blob| blob.bytes).sum()
+    }
+
+    fn touch_made(&self, source: Digest) -> Option<(BufferName, usize)> {
+        let store = self.store();
+        let name = *store.made.get(&source)?;
+        Some((BufferName(name), store.blobs.get(&name)?.bytes))
+    }
+
+    fn store(&self) -> MutexGuard<'_, Store> {
+        self.store.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Store {
+    fn keep(&mut self, name: Digest, bytes: usize, content: Content) {
+        // One more than the last message: not to be let go before the next.
+        let used = self.clock + 1;
+        let blob = self.blobs.entry(name).or_insert(Blob {
+            content,
+            bytes,
+            used,
+        });
+        blob.used = used;
+    }
+}
+
+/// What a buffer is made from: its kind, and the digests of its sources.
+pub(crate) fn source(kind: &str, from: &[Digest]) -> Hasher {
+    let mut hasher = Hasher::new();
+    hasher.text("view").text(kind);
+    from.iter().for_each(|digest| {
+        hasher.digest(*digest);
+    });
+    hasher
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn named(names: &[BufferName]) -> BTreeSet<BufferName> {
+        names.iter().copied().collect()
+    }
+
+    #[test]
+    fn old_buffers_go_when_the_budget_is_full_and_named_ones_stay() {
+        let buffers = Buffers::new(8);
+        let make = |number: u32| {
+            let source = source("test", &[Digest::of(&number.to_le_bytes())]).finish();
+            let (name, length) = buffers.made(source, || bytes(vec![number, number]));
+            assert_eq!(length, 8);
+            buffers.sent(&named(&[name]));
+            name
+        };
+        let names: Vec<BufferName> = (0..4).map(make).collect();
+        assert_eq!(buffers.total(), 16);
+        assert!(buffers.get(names[0].0).is_none() && buffers.get(names[1].0).is_none());
+        assert_eq!(&buffers.get(names[2].0).unwrap()[..4], &2u32.to_le_bytes());
+        assert_eq!(buffers.get(names[3].0).unwrap().len(), 8);
+        // A buffer that comes back is kept again without being made again.
+        let source = source("test", &[Digest::of(&2u32.to_le_bytes())]).finish();
+        let (back, _) = buffers.made(source, || panic!("it is there"));
+        assert_eq!(back, names[2]);
+    }
+
+    #[test]
+    fn awaited_buffers_are_made_once() {
+        use std::sync::atomic::{AtomicUsize, Ordering};
+        let count = Arc::new(AtomicUsize::new(0));
+        let buffers = Buffers::new(0);
+        let counted = Arc::clone(&count);
+        let name = buffers.awaited(Digest::of(b"x"), 4, move || {
+            counted.fetch_add(1, Ordering::Relaxed);
+            bytes(vec![7u32])
+        });
+        buffers.sent(&named(&[name]));
+        assert_eq!(count.load(Ordering::Relaxed), 0);
+        assert_eq!(&buffers.get(name.0).unwrap()[..], &7u32.to_le_bytes());
+        assert!(buffers.get(name.0).is_some());
+        assert_eq!(count.load(Ordering::Relaxed), 1);
+        buffers.sent(&named(&[]));
+        assert!(buffers.get(name.0).is_none());
+    }
+}
