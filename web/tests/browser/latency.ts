@@ -3,7 +3,8 @@
 import { readFileSync, writeFileSync } from "node:fs";
 import { launch, LivePage, Workshop } from "./support.ts";
 
-const ROUNDS = 9;
+const ROUNDS = 7;
+const PAUSE_MS = 3000;
 
 /** A wavy roof of 312 x 312 rings; moving the last node changes every vertex. */
 const GRAPH = `Graph(
@@ -44,6 +45,8 @@ try {
 /** Saves a new value and waits for its picture. */
 async function round(live: LivePage, file: string, lift: number): Promise<Parts> {
   const version = await live.version();
+  // Whatever the software drawing still does must not count into the next round.
+  await new Promise((resolve) => setTimeout(resolve, PAUSE_MS));
   const source = readFileSync(file, "utf8").replace(/default: [\d.]+/, `default: ${lift}`);
   const saved = Date.now();
   writeFileSync(file, source);
