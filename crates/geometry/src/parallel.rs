@@ -38,19 +38,46 @@ where
     T: Send,
     F: Fn(usize, &mut T) + Sync,
 {
+    fill_chunks(out, monitor, |first, slots| {
+        for (k, slot) in slots.iter_mut().enumerate() {
+            f(first + k, slot);
+        }
+    })
+}
+
+/// Calls `f(first, slots)` for every chunk of `out`, in parallel: `slots` begin
+/// with element `first`. For kernels that work on several elements at a time.
+///
+/// # Errors
+/// [`GeometryError::Cancelled`] when `monitor` asks to stop; `out` is then
+/// partly written.
+pub fn fill_chunks<T, F>(out: &mut [T], monitor: &dyn Monitor, f: F) -> Result<(), GeometryError>
+where
+    T: Send,
+    F: Fn(usize, &mut [T]) + Sync,
+{
     let total = out.len() as u64;
     let done = AtomicU64::new(0);
     out.par_chunks_mut(CHUNK)
         .enumerate()
         .try_for_each(|(chunk, slots)| {
             monitor.check()?;
-            for (k, slot) in slots.iter_mut().enumerate() {
-                f(chunk * CHUNK + k, slot);
-            }
+            f(chunk * CHUNK, slots);
             let before = done.fetch_add(slots.len() as u64, Ordering::Relaxed);
             monitor.progress(before + slots.len() as u64, total);
             Ok(())
         })
+}
+
+/// Whether `f(first, chunk)` holds for every chunk of `items`, in parallel:
+/// `chunk` begins with element `first`.
+pub(crate) fn all<T: Sync>(items: &[T], f: impl Fn(usize, &[T]) -> bool + Sync) -> bool {
+    // Few items are not worth waking other threads for.
+    if items.len() <= CHUNK {
+        return f(0, items);
+    }
+    let chunks = items.par_chunks(CHUNK).enumerate();
+    chunks.all(|(chunk, items)| f(chunk * CHUNK, items))
 }
 
 /// Calls `f(i)` for `i` in `0..count` one after the other: for work whose steps

@@ -13,10 +13,10 @@ pub use attribute::{Attribute, AttributeValues, SEAM};
 pub use labels::{Labels, Material, NO_LABEL};
 pub use triangles::Triangles;
 
-use crate::GeometryError;
 use crate::buffer::Buffer;
 use crate::digest::{Digest, Hasher};
 use crate::topology::Topology;
+use crate::{GeometryError, parallel};
 
 /// The elements of a mesh that can carry values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -309,6 +309,14 @@ fn check_positions(positions: &[DVec3], topology: &Topology) -> Result<(), Geome
             expected: topology.vertex_count(),
             actual: positions.len(),
         });
+    }
+    // Without an early end, so that it runs at the speed of memory.
+    let finite = |_, positions: &[DVec3]| {
+        let all = positions.iter().flat_map(|position| position.to_array());
+        all.fold(true, |finite, x| finite & x.is_finite())
+    };
+    if parallel::all(positions, finite) {
+        return Ok(());
     }
     match positions.iter().position(|position| !position.is_finite()) {
         Some(vertex) => Err(GeometryError::NonFiniteVertex { vertex }),

@@ -6,7 +6,7 @@ use crate::{GeometryError, Monitor, parallel};
 
 use super::bilinear::bilinear;
 use super::sharpness::decayed_attribute;
-use super::tiles::Tiles;
+use super::tiles::{Line, Tiles};
 use super::value::{Value, middle, zeroed};
 
 /// The fine faces in blocks of side × side, one block per face of the cage.
@@ -128,14 +128,22 @@ impl Blocks<'_> {
     /// The cells of one tile, from its lines of points two by two.
     fn write_tile(&self, tile: usize, low: &mut Vec<u32>, high: &mut Vec<u32>, out: &mut [u32]) {
         let side = self.tiles.side;
+        let [first, second, third, last] = std::array::from_fn(|k| self.tiles.cage.face(tile)[k]);
+        let [below, right, above, left] = self.tiles.lines_round(tile);
+        let border = |line: Line, ends: [u32; 2], points: &mut [u32]| {
+            (points[0], points[side]) = (ends[0], ends[1]);
+            for (t, point) in points[..side].iter_mut().enumerate().skip(1) {
+                *point = line.at(t) as u32;
+            }
+        };
         let load = |j: usize, line: &mut [u32]| {
-            if j == 0 || j == side {
-                for (i, point) in line.iter_mut().enumerate() {
-                    *point = self.tiles.at(tile, i, j) as u32;
-                }
+            if j == 0 {
+                border(below, [first, second], line);
+            } else if j == side {
+                border(above, [last, third], line);
             } else {
-                line[0] = self.tiles.at(tile, 0, j) as u32;
-                line[side] = self.tiles.at(tile, side, j) as u32;
+                line[0] = left.at(j) as u32;
+                line[side] = right.at(j) as u32;
                 let start = (self.tiles.face_start(tile) + (j - 1) * (side - 1)) as u32;
                 for (point, index) in line[1..side].iter_mut().zip(start..) {
                     *point = index;

@@ -75,16 +75,31 @@ fn load_edge<T: Value>(
     values: &[T],
     line: &mut [T],
 ) {
-    let sides = tiles.cage.adjacency().edge_corners(edge);
-    for (t, value) in line.iter_mut().enumerate() {
-        let here = values[tiles.on_edge(edge, t)];
-        *value = match *sides {
-            [left, right] if sharpness < 1.0 => {
-                let beside = |corner| values[beside(tiles, corner, t)];
-                blend(moved(beside(left), here, beside(right)), here, sharpness)
-            }
-            _ => here,
-        };
+    let across = |here: T, left: usize, right: usize| {
+        blend(moved(values[left], here, values[right]), here, sharpness)
+    };
+    let (side, inside) = (tiles.side, tiles.edge_line(edge));
+    let [first, last] = tiles.cage.adjacency().edge(edge);
+    line[0] = values[first as usize];
+    line[side] = values[last as usize];
+    for (t, value) in line[..side].iter_mut().enumerate().skip(1) {
+        *value = values[inside.at(t)];
+    }
+    let &[left, right] = tiles.cage.adjacency().edge_corners(edge) else {
+        return;
+    };
+    if sharpness >= 1.0 {
+        return;
+    }
+    for t in [0, side] {
+        let beside = |corner| beside(tiles, corner, t);
+        line[t] = across(line[t], beside(left), beside(right));
+    }
+    if side >= 2 {
+        let [left, right] = [left, right].map(|corner| tiles.beside_line(corner as usize));
+        for (t, value) in line[..side].iter_mut().enumerate().skip(1) {
+            *value = across(*value, left.at(t), right.at(t));
+        }
     }
 }
 

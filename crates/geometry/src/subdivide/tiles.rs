@@ -17,6 +17,26 @@ pub(super) struct Tiles<'a> {
     pub(super) side: usize,
 }
 
+/// Points at even steps through the array of all points.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Line {
+    /// The first point, at t = 1.
+    first: usize,
+    step: isize,
+}
+
+impl Line {
+    fn new(first: usize, step: isize) -> Self {
+        Self { first, step }
+    }
+
+    /// The point at `t`, from 1 on.
+    #[inline]
+    pub(super) fn at(self, t: usize) -> usize {
+        self.first.wrapping_add_signed(self.step * (t as isize - 1))
+    }
+}
+
 impl<'a> Tiles<'a> {
     pub(super) fn new(cage: &'a Topology, side: usize) -> Self {
         Self { cage, side }
@@ -70,6 +90,41 @@ impl<'a> Tiles<'a> {
         self.cage.adjacency().edge(edge as usize)[0] == self.cage.corners()[corner]
     }
 
+    /// The points inside `edge` in its own sense, `t` cells along it for
+    /// 0 < t < side.
+    pub(super) fn edge_line(&self, edge: usize) -> Line {
+        Line::new(self.cage.vertex_count() + edge * self.edge_len(), 1)
+    }
+
+    /// The points inside the edge that leaves `corner`, `t` cells along it for
+    /// 0 < t < side.
+    pub(super) fn along_line(&self, corner: usize) -> Line {
+        let edge = self.cage.adjacency().corner_edges()[corner] as usize;
+        let line = self.edge_line(edge);
+        if self.is_along(corner) || self.side < 2 {
+            line
+        } else {
+            Line::new(line.at(self.edge_len()), -1)
+        }
+    }
+
+    /// The points one cell inside the corner's face from those inside the edge
+    /// that leaves `corner`, in the edge's own sense; for a side of at least 2.
+    pub(super) fn beside_line(&self, corner: usize) -> Line {
+        let (start, row) = (self.face_start(corner / 4), self.edge_len());
+        let line = match corner % 4 {
+            0 => Line::new(start, 1),
+            1 => Line::new(start + row - 1, row as isize),
+            2 => Line::new(start + row * row - 1, -1),
+            _ => Line::new(start + row * (row - 1), -(row as isize)),
+        };
+        if self.is_along(corner) {
+            line
+        } else {
+            Line::new(line.at(row), -line.step)
+        }
+    }
+
     /// The point `t` cells along the edge that leaves `corner`.
     pub(super) fn along_side(&self, corner: usize, t: usize) -> usize {
         let edge = self.cage.adjacency().corner_edges()[corner] as usize;
@@ -110,19 +165,35 @@ impl<'a> Tiles<'a> {
         self.at(corner / 4, i, j)
     }
 
+    /// The lines round `face`: its first, second, third and last side, the later
+    /// two against the face's sense, so that all run as its u and v do.
+    pub(super) fn lines_round(&self, face: usize) -> [Line; 4] {
+        let line = |k: usize| self.along_line(4 * face + k);
+        let back = |line: Line| Line::new(line.at(self.edge_len()), -line.step);
+        // Without points inside the edges there is nothing to turn round.
+        if self.side < 2 {
+            return [Line::new(0, 0); 4];
+        }
+        [line(0), line(1), back(line(2)), back(line(3))]
+    }
+
     /// Copies the (side + 1)² values of `face`, borders included, row by row.
     pub(super) fn load<T: Value>(&self, face: usize, values: &[T], tile: &mut [T]) {
         let (side, row) = (self.side, self.side + 1);
-        for t in 0..=side {
-            tile[t] = values[self.at(face, t, 0)];
-            tile[side * row + t] = values[self.at(face, t, side)];
+        let [a, b, c, d] = std::array::from_fn(|k| values[self.cage.face(face)[k] as usize]);
+        let [low, right, high, left] = self.lines_round(face);
+        (tile[0], tile[side]) = (a, b);
+        (tile[side * row], tile[side * row + side]) = (d, c);
+        for t in 1..side {
+            tile[t] = values[low.at(t)];
+            tile[side * row + t] = values[high.at(t)];
         }
         let start = self.face_start(face);
         let inside = &values[start..start + self.face_len()];
         for j in 1..side {
             let line = &mut tile[j * row..(j + 1) * row];
-            line[0] = values[self.at(face, 0, j)];
-            line[side] = values[self.at(face, side, j)];
+            line[0] = values[left.at(j)];
+            line[side] = values[right.at(j)];
             line[1..side].copy_from_slice(&inside[(j - 1) * (side - 1)..j * (side - 1)]);
         }
     }
