@@ -81,16 +81,20 @@ pub fn vertex_normals(
     unit: bool,
     monitor: &dyn Monitor,
 ) -> Result<Vec<DVec3>, GeometryError> {
-    let area_vectors = face_area_vectors(mesh, monitor)?;
+    // Area vectors, or unit normals where size does not count.
+    let of_face = match weights {
+        NormalWeights::Area => face_area_vectors(mesh, monitor)?,
+        NormalWeights::Angle | NormalWeights::Uniform => face_normals(mesh, monitor)?,
+    };
     let adjacency = mesh.topology().adjacency_with(monitor)?;
     parallel::map(mesh.vertex_count(), monitor, |vertex| {
         let mut sum = DVec3::ZERO;
         for &corner in adjacency.vertex_corners(vertex) {
-            let area = area_vectors[adjacency.corner_faces()[corner as usize] as usize];
+            let normal = of_face[adjacency.corner_faces()[corner as usize] as usize];
             sum += match weights {
-                NormalWeights::Angle => unit_or_zero(area) * corner_angle(mesh, corner),
-                NormalWeights::Area => area * 0.5,
-                NormalWeights::Uniform => unit_or_zero(area),
+                NormalWeights::Angle => normal * corner_angle(mesh, corner),
+                NormalWeights::Area => normal * 0.5,
+                NormalWeights::Uniform => normal,
             };
         }
         if unit { unit_or_zero(sum) } else { sum }

@@ -52,29 +52,77 @@ pub(super) fn mean(
     }
     let mut next = vec![DVec3::ZERO; field.len()];
     for pass in 0..iterations {
-        parallel::fill(&mut next, &Quiet(monitor), |vertex, out| {
-            let own = field[vertex];
-            let k = share(vertex);
-            let blend = match sum_of(stencil, vertex, &field) {
-                // Times the total weight, as only the sense of the blend counts.
-                Some((sum, total)) if k > 0.0 => {
-                    let blend = own * ((1.0 - k) * total) + sum * k;
-                    match unit {
-                        true => unit_or(blend, own),
-                        false => blend / total,
-                    }
+        let blend = |vertex: usize| blend(vertex, &field, stencil, share(vertex));
+        parallel::fill_chunks(&mut next, &Quiet(monitor), |first, out| {
+            if unit {
+                unit_pass(first, out, &field, blend);
+            } else {
+                for (vertex, out) in (first..).zip(out.iter_mut()) {
+                    *out = blend(vertex).map_or(field[vertex], |(blend, total)| blend / total);
                 }
-                _ => own,
-            };
-            *out = match cones {
-                Some(cones) => cones.limit(vertex, blend),
-                None => blend,
-            };
+            }
+            if let Some(cones) = cones {
+                for (vertex, out) in (first..).zip(out) {
+                    *out = cones.limit(vertex, *out);
+                }
+            }
         })?;
         std::mem::swap(&mut field, &mut next);
         monitor.progress(u64::from(pass) + 1, u64::from(iterations));
     }
     Ok(field)
+}
+
+/// (1 - k) n + k mean times the neighbours' total weight, and that total; `None`
+/// where nothing is blended.
+#[inline(always)]
+fn blend(vertex: usize, field: &[DVec3], stencil: &Stencil, share: f64) -> Option<(DVec3, f64)> {
+    match sum_of(stencil, vertex, field) {
+        Some((sum, total)) if share > 0.0 => {
+            let blend = field[vertex] * ((1.0 - share) * total) + sum * share;
+            Some((blend, total))
+        }
+        _ => None,
+    }
+}
+
+/// Vertices whose blends are brought to unit length together: roots and
+/// divisions side by side take little more time than one.
+const BLOCK: usize = 16;
+
+/// One pass over the vertices from `first` on, to unit length: of a blend only
+/// its sense counts. One that vanishes leaves the direction as it is.
+fn unit_pass(
+    first: usize,
+    out: &mut [DVec3],
+    field: &[DVec3],
+    blend: impl Fn(usize) -> Option<(DVec3, f64)>,
+) {
+    for (block, out) in out.chunks_mut(BLOCK).enumerate() {
+        let first = first + block * BLOCK;
+        let own = &field[first..first + out.len()];
+        let [mut x, mut y, mut z] = [[0.0; BLOCK]; 3];
+        for k in 0..own.len() {
+            let blend = blend(first + k).map_or(DVec3::ZERO, |(blend, _)| blend);
+            [x[k], y[k], z[k]] = blend.to_array();
+        }
+        let mut scale = [0.0; BLOCK];
+        for (k, scale) in scale.iter_mut().enumerate() {
+            let squared = x[k] * x[k] + y[k] * y[k] + z[k] * z[k];
+            *scale = if squared > VANISHED {
+                1.0 / squared.sqrt()
+            } else {
+                0.0
+            };
+        }
+        for (k, (out, &own)) in out.iter_mut().zip(own).enumerate() {
+            *out = if scale[k] > 0.0 {
+                DVec3::new(x[k], y[k], z[k]) * scale[k]
+            } else {
+                own
+            };
+        }
+    }
 }
 
 /// The weighted sum of the neighbours and their weights' total; `None` where
@@ -84,6 +132,11 @@ fn sum_of(stencil: &Stencil, vertex: usize, field: &[DVec3]) -> Option<(DVec3, f
     let (neighbours, weights) = stencil.row(vertex);
     let mut sum = DVec3::ZERO;
     if weights.is_empty() {
+        if let &[a, b, c, d] = neighbours {
+            // The usual valence, without a loop.
+            let [a, b, c, d] = [a, b, c, d].map(|neighbour| field[neighbour as usize]);
+            return Some((sum + a + b + c + d, 4.0));
+        }
         for &neighbour in neighbours {
             sum += field[neighbour as usize];
         }
@@ -95,17 +148,6 @@ fn sum_of(stencil: &Stencil, vertex: usize, field: &[DVec3]) -> Option<(DVec3, f
         total += weight;
     }
     (total > NONE).then_some((sum, total))
-}
-
-/// `vector` at unit length, or `otherwise` where it vanishes.
-#[inline]
-fn unit_or(vector: DVec3, otherwise: DVec3) -> DVec3 {
-    let squared = vector.length_squared();
-    if squared > VANISHED {
-        vector * (1.0 / squared.sqrt())
-    } else {
-        otherwise
-    }
 }
 
 /// Weights that add up to less are the rounding of coordinates.
