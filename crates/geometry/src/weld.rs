@@ -1,5 +1,7 @@
 //! Joining vertices: those at the same place, or a given list of pairs.
 
+mod coincident;
+
 use glam::DVec3;
 
 use crate::parallel::in_order;
@@ -190,23 +192,13 @@ pub(crate) fn clusters(
     distance: f64,
     monitor: &dyn Monitor,
 ) -> Result<Vec<u32>, GeometryError> {
-    let mut sets = Sets::new(positions.len());
-    let mut order: Vec<u32> = (0..positions.len() as u32).collect();
-    let key = |&i: &u32| {
-        // Adding zero turns -0 into 0; finite floats of one sign sort by value.
-        let p = positions[i as usize] + DVec3::ZERO;
-        (p.to_array().map(f64::to_bits), i)
-    };
-    parallel::sort_by_key(&mut order, monitor, key)?;
-    // Equal places follow each other, the lowest index first.
-    in_order(order.len().saturating_sub(1), monitor, |at| {
-        if key(&order[at]).0 == key(&order[at + 1]).0 {
-            sets.join(order[at], order[at + 1]);
-        }
-    })?;
-    if distance > 0.0 {
-        join_near(positions, distance, &mut sets, monitor)?;
+    let lowest = coincident::lowest(positions, monitor)?;
+    if distance <= 0.0 {
+        return Ok(lowest);
     }
+    // Each place leads to a lower one or itself, as sets do.
+    let mut sets = Sets(lowest);
+    join_near(positions, distance, &mut sets, monitor)?;
     let mut lowest = vec![0; positions.len()];
     in_order(positions.len(), monitor, |i| {
         lowest[i] = sets.root(i as u32);
