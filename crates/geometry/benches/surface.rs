@@ -27,39 +27,70 @@ fn main() {
             )
             .run();
         let surface = Surface::new(&mesh, &Unmonitored).expect("a surface");
-        let twice = [positions.clone(), positions.clone()].concat();
-        let mut points = shapes::scattered(&twice, 1.0, 10.0, 1);
-        points.truncate(2 * size as usize * size as usize);
-        let ordered = vectors(points.clone());
-        shuffle(&mut points, 2);
-        let shuffled = vectors(points);
-        let corners: Vec<Vector> = positions.iter().map(|&p| Vector::from(p)).collect();
+        let corners = positions.iter().map(|&place| Vector::from(place)).collect();
         let peer = TriMesh::new(corners, triangles.clone()).expect("a mesh");
-        for (kernel, points) in [
-            ("closest place, in mesh order", &ordered),
-            ("closest place, shuffled", &shuffled),
-        ] {
-            let peer = &peer;
-            let ask = move || {
-                let mut sum = 0.0;
-                for &point in points.iter() {
-                    let place = peer.project_local_point(Vector::from(point.to_array()), true);
-                    sum += place.point.x;
-                }
-                sum
-            };
-            bench
-                .case(kernel, points.len(), "queries")
-                .ours(
-                    || (),
-                    |()| {
-                        surface
-                            .closest_all(points, &Unmonitored)
-                            .expect("nobody stops it")
-                    },
-                )
-                .peer("parry3d f64", ask)
-                .run();
-        }
+        let twice = [positions.clone(), positions].concat();
+        let mut points = shapes::scattered(&twice, 1.0, 10.0, 1);
+        points.truncate(triangles.len());
+        let ordered = vectors(points.clone());
+        compare(
+            &bench,
+            "closest place, in mesh order",
+            &surface,
+            &peer,
+            &ordered,
+        );
+        ask_again(&bench, &surface, &ordered);
+        shuffle(&mut points, 2);
+        compare(
+            &bench,
+            "closest place, shuffled",
+            &surface,
+            &peer,
+            &vectors(points),
+        );
     }
+}
+
+fn compare(bench: &Bench, kernel: &str, surface: &Surface, peer: &TriMesh, points: &[DVec3]) {
+    bench
+        .case(kernel, points.len(), "queries")
+        .ours(
+            || (),
+            |()| {
+                surface
+                    .closest_all(points, &Unmonitored)
+                    .expect("nobody stops it")
+            },
+        )
+        .peer("parry3d f64", || {
+            let one =
+                |point: &DVec3| peer.project_local_point(Vector::from(point.to_array()), true);
+            points.iter().map(|point| one(point).point.x).sum::<f64>()
+        })
+        .run();
+}
+
+/// The same queries, each point moved by up to a tenth of an edge length.
+fn ask_again(bench: &Bench, surface: &Surface, points: &[DVec3]) {
+    let places: Vec<[f64; 3]> = points.iter().map(|point| point.to_array()).collect();
+    let moved = vectors(shapes::scattered(&places, 0.0, 0.1, 3));
+    let earlier = surface
+        .closest_all(points, &Unmonitored)
+        .expect("nobody stops it");
+    bench
+        .case(
+            "closest place, again after a small move",
+            moved.len(),
+            "queries",
+        )
+        .ours(
+            || (),
+            |()| {
+                surface
+                    .closest_again(&moved, &earlier, &Unmonitored)
+                    .expect("nobody stops it")
+            },
+        )
+        .run();
 }

@@ -1,7 +1,7 @@
 //! The place of a path that is farthest from the surface.
 
 use super::solver::Path;
-use crate::surface::{Piece, Surface};
+use crate::surface::{ANYWHERE, Piece, Surface};
 
 /// Evaluations at most; walls, folds and tubes need under ten.
 const EVALUATIONS: u32 = 64;
@@ -60,7 +60,7 @@ pub(super) fn highest(surface: &Surface, path: &Path, end: f64, slack: f64) -> (
             leaf: closest.leaf,
         }
     };
-    let first = sample(0.0, 0);
+    let first = sample(0.0, ANYWHERE);
     let last = sample(end, first.leaf);
     let mut best = if last.distance > first.distance {
         last

@@ -18,8 +18,15 @@ pub(super) struct Local<'a> {
 
 impl Local<'_> {
     /// d = t / cos at `vertex`, at most the solver's limit, judged by the
-    /// solver's border rule.
-    pub(super) fn solve(&self, start: &Start, vertex: usize, wanted: f64, side: Side) -> Found {
+    /// solver's border rule. Searches from `leaf`, and leaves there where it ended.
+    pub(super) fn solve(
+        &self,
+        start: &Start,
+        vertex: usize,
+        wanted: f64,
+        side: Side,
+        leaf: &mut u32,
+    ) -> Found {
         if wanted <= 0.0 {
             return Found::default();
         }
@@ -32,9 +39,10 @@ impl Local<'_> {
             Side::Inward => -start.direction,
         };
         let point = start.origin + away * length;
-        let measured = solver.surface.measure(point, solver.border, 0);
+        let measured = solver.surface.measure(point, solver.border, *leaf);
         let solved = (measured.distance - wanted).abs() <= solver.slack(wanted);
         let closest = measured.closest;
+        *leaf = closest.leaf;
         let topology = solver.surface.topology();
         let own_faces = topology.adjacency().vertex_corners(vertex).iter();
         let own_faces =

@@ -17,7 +17,7 @@ use crate::math::{angle_between, unit_or_zero};
 use crate::mesh::Domain;
 use crate::normals::{NormalWeights, vertex_normals, vertices_without_normal};
 use crate::parallel;
-use crate::surface::{Border, Surface};
+use crate::surface::{ANYWHERE, Border, Surface};
 use crate::{Amount, Directions, GeometryError, Mesh, Monitor};
 use local::Local;
 
@@ -156,7 +156,7 @@ impl Work<'_> {
             solver: &self.solver,
         };
         let moves = |vertex: usize| is_used(self.mesh, vertex);
-        let found = parallel::map(self.mesh.vertex_count(), monitor, |vertex| {
+        let solve = |vertex: usize, leaf: &mut u32| {
             if !moves(vertex) {
                 return local::Found::default();
             }
@@ -168,11 +168,19 @@ impl Work<'_> {
             };
             let wanted = thickness.at(vertex);
             match self.mode {
-                Compensate::Local => local.solve(&start, vertex, wanted, side),
+                Compensate::Local => local.solve(&start, vertex, wanted, side, leaf),
                 Compensate::Global => local::Found {
-                    solution: self.solver.solve(&start, wanted, side),
+                    solution: self.solver.solve_near(&start, wanted, side, leaf),
                     ..Default::default()
                 },
+            }
+        };
+        let mut found = vec![local::Found::default(); self.mesh.vertex_count()];
+        parallel::fill_chunks(&mut found, monitor, |first, found| {
+            // The next vertex is mostly near the last one.
+            let mut leaf = ANYWHERE;
+            for (vertex, found) in (first..).zip(found) {
+                *found = solve(vertex, &mut leaf);
             }
         })?;
         let vectors = (0..found.len()).map(|vertex| {

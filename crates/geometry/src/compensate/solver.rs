@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::exit::exit;
 use super::highest::highest;
-use crate::surface::{Border, Facing, Measured, Surface};
+use crate::surface::{ANYWHERE, Border, Facing, Measured, Surface};
 
 /// Which side of the base a point is moved to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -187,6 +187,18 @@ impl<'a> Solver<'a> {
     /// distances belong to the other side. Where no length does it, the point
     /// is left where it is farthest before that face or the limit.
     pub fn solve(&self, start: &Start, thickness: f64, side: Side) -> Solution {
+        self.solve_near(start, thickness, side, &mut { ANYWHERE })
+    }
+
+    /// [`Solver::solve`] that starts its searches at `leaf` and leaves there where
+    /// they ended: the same solution, found sooner for one point after another.
+    pub(super) fn solve_near(
+        &self,
+        start: &Start,
+        thickness: f64,
+        side: Side,
+        leaf: &mut u32,
+    ) -> Solution {
         if thickness <= 0.0 {
             return Solution::default();
         }
@@ -205,7 +217,7 @@ impl<'a> Solver<'a> {
             thickness,
             from..limit,
             Border::Clip,
-            0,
+            leaf,
             &mut evaluations,
         );
         let (length, measured) = match climb {
@@ -264,15 +276,15 @@ impl<'a> Solver<'a> {
         thickness: f64,
         range: std::ops::Range<f64>,
         border: Border,
-        mut leaf: u32,
+        leaf: &mut u32,
         evaluations: &mut u32,
     ) -> Climb {
         let slack = self.slack(thickness);
         let mut length = range.start;
         for _ in 0..STEPS {
-            let measured = self.surface.measure(path.at(length), border, leaf);
+            let measured = self.surface.measure(path.at(length), border, *leaf);
             *evaluations += 1;
-            leaf = measured.closest.leaf;
+            *leaf = measured.closest.leaf;
             let gap = thickness - measured.distance;
             if gap.abs() <= slack {
                 return Climb::Reached(length, measured);
@@ -305,9 +317,10 @@ impl<'a> Solver<'a> {
         let cosine = start.direction.dot(start.normal);
         let longest = (EXTENDED * thickness / cosine.max(1e-300)).min(self.limit * thickness);
         let range = solution.length..longest.max(solution.length);
-        let leaf = clipped.closest.leaf;
+        let mut leaf = clipped.closest.leaf;
         let evaluations = &mut solution.evaluations;
-        let climb = self.climb(path, thickness, range, Border::Extend, leaf, evaluations);
+        let border = Border::Extend;
+        let climb = self.climb(path, thickness, range, border, &mut leaf, evaluations);
         let reached = match climb {
             Climb::Reached(length, measured) => {
                 let crossing = self.crossing(path, thickness, length, side);

@@ -1,10 +1,13 @@
 //! Building the tree: binned surface-area heuristic, then four children a node.
 
+use std::ops::Range;
+
 use glam::DVec3;
 
 use super::leaf::{Leaf, WIDTH};
 use super::node::{EMPTY, LEAF, Node};
 use super::triangle::Triangle;
+use super::turned::Turned;
 use crate::parallel::{CHUNK, in_order};
 use crate::{GeometryError, Monitor};
 
@@ -18,6 +21,10 @@ pub(super) const MAX_DEPTH: usize = 40;
 /// Items below which a subtree is built by one thread.
 const PARALLEL: usize = 8192;
 
+/// Triangles under a node that still gets [`Turned`] boxes: over more of them a
+/// surface is hardly flat, and upright boxes do.
+const TURNED: usize = 64;
+
 /// Relative widening of boxes, above the rounding of the distances inside them.
 const PAD: f64 = 1e-14;
 
@@ -29,7 +36,7 @@ pub(super) struct Bounds {
 }
 
 impl Bounds {
-    const NONE: Self = Self {
+    pub(super) const NONE: Self = Self {
         low: DVec3::INFINITY,
         high: DVec3::NEG_INFINITY,
     };
@@ -41,7 +48,7 @@ impl Bounds {
         }
     }
 
-    fn with(self, point: DVec3) -> Self {
+    pub(super) fn with(self, point: DVec3) -> Self {
         Self {
             low: self.low.min(point),
             high: self.high.max(point),
@@ -93,6 +100,7 @@ struct Binary {
 pub(super) struct Tree {
     pub(super) nodes: Vec<Node>,
     pub(super) leaves: Vec<Leaf>,
+    pub(super) turned: Vec<Turned>,
     pub(super) root: u32,
 }
 
@@ -115,10 +123,12 @@ pub(super) fn build(
         monitor,
         nodes: Vec::with_capacity(binary.len() / 4),
         leaves: Vec::with_capacity(binary.len() / 2 + 1),
+        turned: Vec::new(),
     };
     let root = widen.reference(0)?;
     Ok(Tree {
         root,
+        turned: widen.turned,
         nodes: widen.nodes,
         leaves: widen.leaves,
     })
@@ -276,6 +286,7 @@ struct Widen<'a, F> {
     monitor: &'a dyn Monitor,
     nodes: Vec<Node>,
     leaves: Vec<Leaf>,
+    turned: Vec<Turned>,
 }
 
 impl<F: Fn(u32) -> Triangle> Widen<'_, F> {
@@ -298,8 +309,45 @@ impl<F: Fn(u32) -> Triangle> Widen<'_, F> {
             let reference = self.reference(child)?;
             let bounds = self.binary[child as usize].bounds;
             self.nodes[here].set(slot, bounds, reference);
+            let parent = if reference & LEAF != 0 {
+                &mut self.leaves[(reference & !LEAF) as usize].parent
+            } else {
+                &mut self.nodes[reference as usize].parent
+            };
+            *parent = here as u32;
         }
+        self.turn(here, &children[..count]);
         Ok(here as u32)
+    }
+
+    /// Gives node `here`, over few triangles, boxes that lean with them.
+    fn turn(&mut self, here: usize, children: &[u32]) {
+        let ranges = children.iter().map(|&child| self.range(child));
+        let ranges: Vec<_> = ranges.collect();
+        if ranges.iter().map(|range| range.len()).sum::<usize>() > TURNED {
+            return;
+        }
+        let triangles = |range: Range<usize>| {
+            let items = self.items[range].iter();
+            items.map(|item| (self.corners)(item.triangle)).collect()
+        };
+        let triangles: Vec<Vec<Triangle>> = ranges.into_iter().map(triangles).collect();
+        if let Some(turned) = Turned::new(&triangles) {
+            self.nodes[here].turned = self.turned.len() as u32;
+            self.turned.push(turned);
+        }
+    }
+
+    /// The items under a binary node, which lie side by side.
+    fn range(&self, at: u32) -> Range<usize> {
+        let [mut first, mut last] = [self.binary[at as usize]; 2];
+        while first.count == 0 {
+            first = self.binary[first.children[0] as usize];
+        }
+        while last.count == 0 {
+            last = self.binary[last.children[1] as usize];
+        }
+        first.first as usize..(last.first + last.count) as usize
     }
 
     /// Up to four descendants of `node`: its children, then of those the one

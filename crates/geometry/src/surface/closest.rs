@@ -3,10 +3,14 @@
 use glam::DVec3;
 
 use super::Surface;
-use super::node::{LEAF, Waiting};
+use super::leaf::Lanes;
+use super::node::{LEAF, Node, Waiting};
 
 /// Slack of a box's distance against its triangles', above their rounding.
 const SLACK: f64 = 1.0 + 1e-12;
+
+/// In place of a leaf to start from: nothing is known yet.
+pub(crate) const ANYWHERE: u32 = u32::MAX;
 
 /// What part of the mesh a place lies on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -52,7 +56,7 @@ impl Surface {
     /// Exact up to rounding. Of equally close triangles the one with the lowest
     /// number counts. Cost: O(log triangles) near the surface.
     pub fn closest(&self, point: DVec3) -> Closest {
-        self.closest_from(point, 0)
+        self.closest_from(point, ANYWHERE)
     }
 
     /// The closest place to `point` if it is not farther than `reach`.
@@ -74,27 +78,72 @@ impl Surface {
             triangle: u32::MAX,
             leaf: 0,
         };
-        self.search(point, &mut best, counts);
+        self.search(&mut Waiting::new(self.root), point, &mut best, counts);
         (best.triangle != u32::MAX).then(|| self.finish(point, &best))
     }
 
     /// [`Surface::closest`] started from a leaf that may be close: the same
     /// answer, found sooner.
     pub(crate) fn closest_from(&self, point: DVec3, leaf: u32) -> Closest {
+        self.closest_with(&mut Waiting::default(), point, leaf)
+    }
+
+    /// [`Surface::closest_from`] with memory that many searches share.
+    #[inline(always)]
+    pub(super) fn closest_with(&self, waiting: &mut Waiting, point: DVec3, leaf: u32) -> Closest {
         let mut best = Best {
             squared: f64::MAX,
             triangle: 0,
             leaf: 0,
         };
-        self.visit(point, leaf, &mut best, |_| true);
-        self.search(point, &mut best, |_| true);
+        if (leaf as usize) < self.leaves.len() {
+            self.visit(point, leaf, &mut best, |_| true);
+            self.climb(waiting, point, leaf, &mut best);
+        } else {
+            waiting.begin(self.root);
+            self.search(waiting, point, &mut best, |_| true);
+        }
         self.finish(point, &best)
     }
 
-    /// Walks the tree, nearest child first.
-    #[inline]
-    fn search(&self, point: DVec3, best: &mut Best, counts: impl Fn(u32) -> bool + Copy) {
-        let mut waiting = Waiting::new(self.root);
+    /// Walks from a leaf up to the root and at each node into what else may be
+    /// closer: mostly nothing, so that the way up is one of known turns, where
+    /// the way down from the root would be one of choices.
+    #[inline(always)]
+    fn climb(&self, waiting: &mut Waiting, point: DVec3, leaf: u32, best: &mut Best) {
+        let mut seen = LEAF | leaf;
+        let mut above = self.leaves[leaf as usize].parent;
+        while let Some(node) = self.nodes.get(above as usize) {
+            let mut squares = self.squared_distances(node, point);
+            for (square, &child) in squares.iter_mut().zip(&node.children) {
+                if child == seen {
+                    *square = f64::INFINITY;
+                }
+            }
+            waiting.push(&squares, &node.children, best.squared * SLACK);
+            self.search(waiting, point, best, |_| true);
+            (seen, above) = (above, node.parent);
+        }
+    }
+
+    /// Squared distance of `point` to the boxes of a node's children.
+    #[inline(always)]
+    fn squared_distances(&self, node: &Node, point: DVec3) -> Lanes {
+        match self.turned.get(node.turned as usize) {
+            Some(turned) => turned.squared_distances(point),
+            None => node.squared_distances(point),
+        }
+    }
+
+    /// Walks through all that waits, nearest child first.
+    #[inline(always)]
+    fn search(
+        &self,
+        waiting: &mut Waiting,
+        point: DVec3,
+        best: &mut Best,
+        counts: impl Fn(u32) -> bool + Copy,
+    ) {
         while let Some((squared, reference)) = waiting.pop() {
             let limit = best.squared * SLACK;
             if squared > limit {
@@ -104,13 +153,13 @@ impl Surface {
                 self.visit(point, reference & !LEAF, best, counts);
             } else {
                 let node = &self.nodes[reference as usize];
-                let squares = node.squared_distances(point);
+                let squares = self.squared_distances(node, point);
                 waiting.push(&squares, &node.children, limit);
             }
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn visit(&self, point: DVec3, leaf: u32, best: &mut Best, counts: impl Fn(u32) -> bool) {
         let lanes = &self.leaves[leaf as usize];
         let squares = lanes.squared_distances(point);
@@ -129,7 +178,8 @@ impl Surface {
 
     fn finish(&self, point: DVec3, best: &Best) -> Closest {
         let triangle = best.triangle;
-        let foot = self.triangle(triangle).closest(point);
+        let inside = self.leaves[best.leaf as usize].foot_inside(triangle, point);
+        let foot = inside.unwrap_or_else(|| self.triangle(triangle).closest(point));
         Closest {
             point: foot.point,
             distance: best.squared.sqrt(),

@@ -11,12 +11,14 @@ mod rim;
 #[cfg(test)]
 mod tests;
 mod triangle;
+mod turned;
 
 use std::sync::{Arc, OnceLock};
 
 use glam::DVec3;
 
 pub(crate) use boxes::{BoxTree, overlap};
+pub(crate) use closest::ANYWHERE;
 pub use closest::{Closest, Feature};
 pub use ray::{Facing, Hit};
 pub use rim::Border;
@@ -29,6 +31,7 @@ use leaf::Leaf;
 use node::Node;
 use rim::Rim;
 use triangle::Triangle;
+use turned::Turned;
 
 /// The triangles of a mesh, sorted so that the closest is found fast.
 ///
@@ -60,6 +63,7 @@ pub struct Surface {
     faces: Vec<u32>,
     nodes: Vec<Node>,
     leaves: Vec<Leaf>,
+    turned: Vec<Turned>,
     root: u32,
     /// The largest magnitude of a coordinate.
     largest: f64,
@@ -112,6 +116,7 @@ impl Surface {
             faces: triangles.faces,
             nodes: Vec::new(),
             leaves: Vec::new(),
+            turned: Vec::new(),
             root: 0,
             largest,
             rim: OnceLock::new(),
@@ -119,6 +124,7 @@ impl Surface {
         let tree = build::build(count, |k| surface.triangle(k), monitor)?;
         surface.nodes = tree.nodes;
         surface.leaves = tree.leaves;
+        surface.turned = tree.turned;
         surface.root = tree.root;
         Ok(surface)
     }

@@ -20,6 +20,10 @@ pub(super) struct Node {
     low: [Lanes; 3],
     high: [Lanes; 3],
     pub(super) children: [u32; WIDTH],
+    /// The number of its turned boxes, or [`UPRIGHT`].
+    pub(super) turned: u32,
+    /// The node whose child this is, or [`NO_NODE`].
+    pub(super) parent: u32,
 }
 
 /// References still to be followed, each with a number that says how far it is.
@@ -28,15 +32,31 @@ pub(super) struct Waiting {
     top: usize,
 }
 
+impl Default for Waiting {
+    fn default() -> Self {
+        Self {
+            stack: [(0.0, 0); STACK],
+            top: 0,
+        }
+    }
+}
+
 impl Waiting {
     /// Only the root waits.
     pub(super) fn new(root: u32) -> Self {
-        let mut stack = [(0.0, 0); STACK];
-        stack[0] = (0.0, root);
-        Self { stack, top: 1 }
+        let mut waiting = Self::default();
+        waiting.begin(root);
+        waiting
     }
 
-    #[inline]
+    /// Only the root waits: for many walks with the same memory.
+    #[inline(always)]
+    pub(super) fn begin(&mut self, root: u32) {
+        self.stack[0] = (0.0, root);
+        self.top = 1;
+    }
+
+    #[inline(always)]
     pub(super) fn pop(&mut self) -> Option<(f64, u32)> {
         self.top = self.top.checked_sub(1)?;
         Some(self.stack[self.top])
@@ -44,8 +64,11 @@ impl Waiting {
 
     /// Adds the children of one node that are not farther than `limit`, the
     /// nearest on top; an infinite number means no child.
-    #[inline]
+    #[inline(always)]
     pub(super) fn push(&mut self, distances: &Lanes, children: &[u32; WIDTH], limit: f64) {
+        if distances.iter().all(|&distance| distance > limit) {
+            return;
+        }
         let bottom = self.top;
         for (&distance, &child) in distances.iter().zip(children) {
             if distance > limit || distance == f64::INFINITY {
@@ -62,12 +85,35 @@ impl Waiting {
     }
 }
 
+/// Squared distance of `p` to each of four boxes, without branches.
+#[inline(always)]
+pub(super) fn axis_distances(low: &[Lanes; 3], high: &[Lanes; 3], p: [f64; 3]) -> Lanes {
+    let mut out = [0.0; WIDTH];
+    for (k, out) in out.iter_mut().enumerate() {
+        let away = |axis: usize| {
+            let beyond = greater(low[axis][k] - p[axis], p[axis] - high[axis][k]);
+            greater(beyond, 0.0)
+        };
+        let (x, y, z) = (away(0), away(1), away(2));
+        *out = x * x + y * y + z * z;
+    }
+    out
+}
+
+/// Stands for the node above the root.
+pub(super) const NO_NODE: u32 = u32::MAX;
+
+/// Marks a node without [`super::turned::Turned`] boxes.
+pub(super) const UPRIGHT: u32 = u32::MAX;
+
 impl Default for Node {
     fn default() -> Self {
         Self {
             low: [[f64::INFINITY; WIDTH]; 3],
             high: [[f64::NEG_INFINITY; WIDTH]; 3],
             children: [EMPTY; WIDTH],
+            turned: UPRIGHT,
+            parent: NO_NODE,
         }
     }
 }
@@ -82,18 +128,9 @@ impl Node {
     }
 
     /// Squared distance of `p` to each child's box; infinite for no child.
-    #[inline]
+    #[inline(always)]
     pub(super) fn squared_distances(&self, p: DVec3) -> Lanes {
-        let mut out = [0.0; WIDTH];
-        for (k, out) in out.iter_mut().enumerate() {
-            let away = |axis: usize, p: f64| {
-                let beyond = greater(self.low[axis][k] - p, p - self.high[axis][k]);
-                greater(beyond, 0.0)
-            };
-            let (x, y, z) = (away(0, p.x), away(1, p.y), away(2, p.z));
-            *out = x * x + y * y + z * z;
-        }
-        out
+        axis_distances(&self.low, &self.high, p.to_array())
     }
 
     /// 0 for each child whose box meets the box from `low` to `high`, infinite

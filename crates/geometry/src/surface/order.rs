@@ -3,7 +3,8 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::{Border, Closest, Surface};
+use super::node::Waiting;
+use super::{ANYWHERE, Border, Closest, Surface};
 use crate::parallel::{self, CHUNK};
 use crate::{GeometryError, Monitor};
 
@@ -24,10 +25,42 @@ impl Surface {
         points: &[DVec3],
         monitor: &dyn Monitor,
     ) -> Result<Vec<Closest>, GeometryError> {
-        self.along_curve(points, monitor, |point, leaf| {
-            let closest = self.closest_from(point, leaf);
+        self.along_curve(points, monitor, |waiting, point, leaf| {
+            let closest = self.closest_with(waiting, point, leaf);
             (closest, closest.leaf)
         })
+    }
+
+    /// [`Surface::closest_all`] for points that have moved a little since `earlier`
+    /// was found for them: the same answers, sooner.
+    ///
+    /// Each search starts at what was closest before, which bounds it from the
+    /// start and is all that is taken over: however far a point has moved, its
+    /// answer is that of a new search. Cost: O(points · log triangles).
+    ///
+    /// # Panics
+    /// If there are not as many points as places.
+    ///
+    /// # Errors
+    /// [`GeometryError::Cancelled`].
+    pub fn closest_again(
+        &self,
+        points: &[DVec3],
+        earlier: &[Closest],
+        monitor: &dyn Monitor,
+    ) -> Result<Vec<Closest>, GeometryError> {
+        assert_eq!(points.len(), earlier.len(), "one earlier place a point");
+        let chunks = points.par_chunks(CHUNK).zip(earlier.par_chunks(CHUNK));
+        let search = |(points, earlier): (&[DVec3], &[Closest])| {
+            monitor.check()?;
+            let mut waiting = Waiting::default();
+            let pairs = points.iter().zip(earlier);
+            Ok(pairs
+                .map(|(&point, earlier)| self.closest_with(&mut waiting, point, earlier.leaf))
+                .collect())
+        };
+        let found: Vec<Vec<Closest>> = chunks.map(search).collect::<Result<_, GeometryError>>()?;
+        Ok(found.concat())
     }
 
     /// The distance to each of `points` under a border rule, and whether the
@@ -41,8 +74,8 @@ impl Surface {
         border: Border,
         monitor: &dyn Monitor,
     ) -> Result<Vec<(f64, bool)>, GeometryError> {
-        self.along_curve(points, monitor, |point, leaf| {
-            let measured = self.measure(point, border, leaf);
+        self.along_curve(points, monitor, |waiting, point, leaf| {
+            let measured = self.measure_with(waiting, point, border, leaf);
             ((measured.distance, measured.at_rim), measured.closest.leaf)
         })
     }
@@ -52,14 +85,15 @@ impl Surface {
         &self,
         points: &[DVec3],
         monitor: &dyn Monitor,
-        query: impl Fn(DVec3, u32) -> (T, u32) + Sync,
+        query: impl Fn(&mut Waiting, DVec3, u32) -> (T, u32) + Sync,
     ) -> Result<Vec<T>, GeometryError> {
         let order = curve_order(points, monitor)?;
         let search = |chunk: &[u64]| {
             monitor.check()?;
-            let mut leaf = 0;
+            let mut leaf = ANYWHERE;
+            let mut waiting = Waiting::default();
             let one = |&key: &u64| {
-                let (found, end) = query(points[index_of(key)], leaf);
+                let (found, end) = query(&mut waiting, points[index_of(key)], leaf);
                 leaf = end;
                 found
             };

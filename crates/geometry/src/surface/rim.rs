@@ -2,8 +2,9 @@
 
 use glam::DVec3;
 
+use super::node::Waiting;
 use super::triangle::Triangle;
-use super::{Closest, Feature, Surface};
+use super::{ANYWHERE, Closest, Feature, Surface};
 use crate::math::unit_or_zero;
 
 /// How the distance to a surface is measured beyond its open border.
@@ -121,9 +122,21 @@ impl Rim {
 }
 
 impl Surface {
-    /// Distance of `point` to the surface under `border`; searched from `leaf`.
+    /// Distance of `point` to the surface under `border`; searched from `leaf`,
+    /// or [`ANYWHERE`].
     pub(crate) fn measure(&self, point: DVec3, border: Border, leaf: u32) -> Measured {
-        let closest = self.closest_from(point, leaf);
+        self.measure_with(&mut Waiting::default(), point, border, leaf)
+    }
+
+    /// [`Surface::measure`] with memory that many searches share.
+    pub(super) fn measure_with(
+        &self,
+        waiting: &mut Waiting,
+        point: DVec3,
+        border: Border,
+        leaf: u32,
+    ) -> Measured {
+        let closest = self.closest_with(waiting, point, leaf);
         let at_rim = self.is_border(closest.feature);
         let mut measured = Measured {
             distance: closest.distance,
@@ -145,7 +158,7 @@ impl Surface {
     /// Distance of `point` to the surface under a border rule, and whether the
     /// closest place of the mesh lies on its border.
     pub fn distance(&self, point: DVec3, border: Border) -> (f64, bool) {
-        let measured = self.measure(point, border, 0);
+        let measured = self.measure(point, border, ANYWHERE);
         (measured.distance, measured.at_rim)
     }
 

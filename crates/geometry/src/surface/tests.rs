@@ -277,3 +277,62 @@ proptest! {
         prop_assert!(difference.abs() <= b.length() + 1e-12);
     }
 }
+
+#[test]
+fn searches_from_anywhere_agree() {
+    let sheet = crate::test_shapes::grid(40, 40, |x, y| [9.0 * x, 9.0 * y, x * x - 3.0 * y * x]);
+    for mesh in [sheet, soup(900, 4)] {
+        let surface = surface(&mesh);
+        let mut noise = Noise(11);
+        let points: Vec<_> = (0..500).map(|_| noise.point() * 6.0).collect();
+        let all = surface.closest_all(&points, &Unmonitored).unwrap();
+        let moved: Vec<_> = points.iter().map(|&p| p + noise.point() * 2.0).collect();
+        let again = surface.closest_again(&moved, &all, &Unmonitored).unwrap();
+        for (&point, found) in moved.iter().zip(again) {
+            assert_eq!(found, surface.closest(point));
+            assert_eq!(
+                (found.distance, found.triangle),
+                brute_force(&surface, point)
+            );
+        }
+    }
+}
+
+/// A million questions, each answered by looking at everything.
+#[test]
+#[ignore = "takes minutes; run with --release"]
+fn a_million_queries_agree_with_brute_force() {
+    let fold = |x: f64, y: f64| [9.0 * x, 9.0 * y, (x * 4.0).fract().min(0.7) * y];
+    let meshes = [
+        crate::test_shapes::grid(31, 31, fold),
+        crate::test_shapes::sphere(40, 24),
+        crate::test_shapes::cylinder(60, 12),
+        soup(2000, 21),
+    ];
+    let mut noise = Noise(23);
+    for mesh in meshes {
+        let surface = surface(&mesh);
+        assert!(surface.triangle_count() <= 2000);
+        // Every third on a lattice, where many triangles are equally close.
+        let points: Vec<_> = (0..250_000)
+            .map(|k| {
+                let point = noise.point() * 3.0;
+                if k % 3 == 0 {
+                    (point * 8.0).round() / 8.0
+                } else {
+                    point
+                }
+            })
+            .collect();
+        let all = surface.closest_all(&points, &Unmonitored).unwrap();
+        let again = surface.closest_again(&points, &all, &Unmonitored).unwrap();
+        assert_eq!(all, again);
+        let wrong = |(&point, found): (&DVec3, &Closest)| {
+            (found.distance, found.triangle) != brute_force(&surface, point)
+        };
+        assert_eq!(
+            points.iter().zip(&all).filter(|&pair| wrong(pair)).count(),
+            0
+        );
+    }
+}
