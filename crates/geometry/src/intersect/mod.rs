@@ -230,6 +230,9 @@ fn search(
     monitor: &dyn Monitor,
 ) -> Result<Found, GeometryError> {
     let places = clusters(mesh.positions(), 0.0, monitor)?;
+    let open = parallel::map(mesh.face_count(), monitor, |face| {
+        Polygon::is_open(mesh, face)
+    })?;
     let tree = BoxTree::new(face_boxes(mesh, monitor)?, monitor)?;
     let total = mesh.face_count();
     let done = AtomicU64::new(0);
@@ -245,7 +248,7 @@ fn search(
                 near.clear();
                 tree.meeting_above(face, &mut near);
                 for &other in near.iter().filter(|&&other| wanted(face, other)) {
-                    let [a, b] = [face, other].map(|face| Polygon::new(mesh, &places, face));
+                    let [a, b] = [face, other].map(|face| Polygon::new(mesh, &places, &open, face));
                     let bounds = [tree.bounds(face), tree.bounds(other)];
                     match relation(&a, &b, bounds, tolerance) {
                         Relation::Apart => {}

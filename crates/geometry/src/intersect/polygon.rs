@@ -25,17 +25,33 @@ pub(super) struct Polygon<'a> {
     mesh: &'a Mesh,
     places: &'a [u32],
     vertices: &'a [u32],
+    /// Every triangle of its fans is known to have area.
+    open: bool,
 }
 
 impl<'a> Polygon<'a> {
     /// The face of that number; `places` has one number per vertex, equal
-    /// where positions are.
-    pub(super) fn new(mesh: &'a Mesh, places: &'a [u32], face: u32) -> Self {
+    /// where positions are, `open` what [`Polygon::is_open`] says of each face.
+    pub(super) fn new(mesh: &'a Mesh, places: &'a [u32], open: &[bool], face: u32) -> Self {
         Self {
             mesh,
             places,
             vertices: mesh.face(face as usize),
+            open: open[face as usize],
         }
+    }
+
+    /// Whether every triangle of the fans from corners 0 and 1 of a face has
+    /// area: asked once a face, not for each pair of faces.
+    pub(super) fn is_open(mesh: &Mesh, face: usize) -> bool {
+        let vertices = mesh.face(face);
+        let count = vertices.len();
+        let at = |corner: usize| mesh.positions()[vertices[corner % count] as usize];
+        let choices = if count == 3 { 1 } else { 2 };
+        (0..choices).all(|choice| {
+            (choice + 1..choice + count - 1)
+                .all(|next| open_axis([at(choice), at(next), at(next + 1)]).is_some())
+        })
     }
 
     /// How many ways to draw diagonals are tried.
@@ -62,7 +78,9 @@ impl<'a> Polygon<'a> {
         let vertices = corners.map(|corner| self.vertices[corner % self.vertices.len()]);
         let place = vertices.map(|vertex| self.places[vertex as usize]);
         let at = vertices.map(|vertex| self.mesh.positions()[vertex as usize]);
-        open_axis(at)?;
+        if !self.open {
+            open_axis(at)?;
+        }
         Some(Corners { at, place })
     }
 

@@ -144,10 +144,23 @@ pub(super) fn meets(a: &Corners, b: &Corners) -> bool {
     let in_b: Few = Few::of((0..3).filter(|&corner: &usize| a.place.contains(&b.place[corner])));
     match (in_a.count, in_b.count) {
         (0, _) | (_, 0) => {
-            let any = |of: &Corners, over: &Corners| {
-                (0..3).any(|k| segment_meets(of.at[k], of.at[(k + 1) % 3], over.at))
+            // Mostly one lies wholly on one side of the other's plane.
+            let of_a = a.at.map(|corner| side_of(b.at, corner));
+            if is_one_side(of_a) {
+                return false;
+            }
+            let of_b = b.at.map(|corner| side_of(a.at, corner));
+            if is_one_side(of_b) {
+                return false;
+            }
+            let any = |of: &Corners, sides: [f64; 3], over: &Corners| {
+                (0..3).any(|k| {
+                    let next = (k + 1) % 3;
+                    let ends = [sides[k], sides[next]];
+                    sided_segment_meets([of.at[k], of.at[next]], ends, over.at)
+                })
             };
-            any(a, b) || any(b, a)
+            any(a, of_a, b) || any(b, of_b, a)
         }
         (1, 1) => {
             let far = |of: &Corners, at: usize| [of.at[(at + 1) % 3], of.at[(at + 2) % 3]];
@@ -193,17 +206,27 @@ pub(super) fn is_folded(a: &Corners, b: &Corners) -> bool {
     let Some(axis) = open_axis(a.at) else {
         return false;
     };
-    side_of(a.at, tip) == 0.0 && {
-        let own = turn(axis, edge[0], edge[1], a.at[in_a]);
-        let other = turn(axis, edge[0], edge[1], tip);
-        (own > 0.0) == (other > 0.0) && other != 0.0
-    }
+    // The plane last: neighbours are often in one plane, and to tell that from
+    // nearly so takes long, but then they mostly lie on both sides of the edge.
+    let own = turn(axis, edge[0], edge[1], a.at[in_a]);
+    let other = turn(axis, edge[0], edge[1], tip);
+    other != 0.0 && (own > 0.0) == (other > 0.0) && side_of(a.at, tip) == 0.0
+}
+
+/// Whether all corners are strictly in front of a plane, or all behind it.
+fn is_one_side(sides: [f64; 3]) -> bool {
+    sides.iter().all(|&side| side > 0.0) || sides.iter().all(|&side| side < 0.0)
 }
 
 /// Whether the segment from p to q has a point in common with a triangle,
 /// ends and borders included.
 fn segment_meets(p: DVec3, q: DVec3, triangle: [DVec3; 3]) -> bool {
-    let (of_p, of_q) = (side_of(triangle, p), side_of(triangle, q));
+    let sides = [side_of(triangle, p), side_of(triangle, q)];
+    sided_segment_meets([p, q], sides, triangle)
+}
+
+/// As [`segment_meets`], where the sides of both ends are known.
+fn sided_segment_meets([p, q]: [DVec3; 2], [of_p, of_q]: [f64; 2], triangle: [DVec3; 3]) -> bool {
     if (of_p > 0.0 && of_q > 0.0) || (of_p < 0.0 && of_q < 0.0) {
         return false;
     }
