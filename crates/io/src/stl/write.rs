@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use tessgraph_geometry::math::unit_or_zero;
-use tessgraph_geometry::{Mesh, Monitor, glam};
+use tessgraph_geometry::{Mesh, Monitor, glam, parallel};
 
 use super::{HEADER, TRIANGLE};
 use crate::Format;
@@ -81,31 +81,22 @@ fn binary(mesh: &Mesh, triangles: &[[u32; 3]], monitor: &dyn Monitor) -> Result<
         return Err(IoError::new(FaultKind::TooLarge, Place::File, cause, help));
     };
     let warnings = rounding(mesh)?;
-    let mut bytes = Vec::with_capacity(HEADER + TRIANGLE * triangles.len());
+    let mut bytes = vec![0; HEADER + TRIANGLE * triangles.len()];
+    let (header, records) = bytes.split_at_mut(HEADER);
+    header.fill(b' ');
     // Not "solid": that would look like ASCII.
-    bytes.extend_from_slice(b"binary STL, tessgraph");
-    bytes.resize(80, b' ');
-    bytes.extend_from_slice(&count.to_le_bytes());
-    for (index, triangle) in triangles.iter().enumerate() {
-        if index.is_multiple_of(POLL) {
-            monitor.check()?;
-            monitor.progress(index as u64, triangles.len() as u64);
-        }
-        let corners = places(mesh, triangle);
-        let mut record = [0; TRIANGLE];
+    let title = b"binary STL, tessgraph";
+    header[..title.len()].copy_from_slice(title);
+    header[HEADER - 4..].copy_from_slice(&count.to_le_bytes());
+    let records = records.as_chunks_mut::<TRIANGLE>().0;
+    parallel::fill(records, monitor, |index, record| {
+        let corners = places(mesh, &triangles[index]);
         let vectors = std::iter::once(normal(corners)).chain(corners);
-        for (slot, vector) in record.as_chunks_mut::<12>().0.iter_mut().zip(vectors) {
-            for (part, value) in slot
-                .as_chunks_mut::<4>()
-                .0
-                .iter_mut()
-                .zip(vector.to_array())
-            {
-                *part = (value as f32).to_le_bytes();
-            }
+        let numbers = vectors.flat_map(|vector| vector.to_array());
+        for (part, value) in record.as_chunks_mut::<4>().0.iter_mut().zip(numbers) {
+            *part = (value as f32).to_le_bytes();
         }
-        bytes.extend_from_slice(&record);
-    }
+    })?;
     Ok(Written { bytes, warnings })
 }
 
