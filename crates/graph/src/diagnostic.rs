@@ -29,6 +29,13 @@ impl Source {
         &self.text
     }
 
+    /// The whole character at byte `at`; nothing at the end of the text, or inside
+    /// a character.
+    pub fn character(&self, at: usize) -> Range<usize> {
+        let rest = self.text.get(at..).unwrap_or_default();
+        at..at + rest.chars().next().map_or(0, char::len_utf8)
+    }
+
     /// Line and column of a byte offset, both from 1; columns count characters.
     /// Cost: O(offset).
     pub fn position(&self, offset: usize) -> (usize, usize) {

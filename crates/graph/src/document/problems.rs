@@ -20,6 +20,11 @@ impl Problems {
         }
     }
 
+    /// The text they are in.
+    pub(crate) fn source(&self) -> &Source {
+        &self.source
+    }
+
     /// An error at `span` with a remark there; [`Problems::add`] keeps it.
     pub(crate) fn error(
         &self,

@@ -30,7 +30,7 @@ pub(super) fn read(
     let head = graph
         .name
         .clone()
-        .unwrap_or(root.span.start..root.span.start + 1);
+        .unwrap_or_else(|| problems.source().character(root.span.start));
     if let Err(problem) = check_version(text, graph, &head, "graph", &problems) {
         return Err(vec![*problem]);
     }
@@ -73,7 +73,7 @@ fn graph_fields<'a>(
     root: &'a Item,
     problems: &Problems,
 ) -> Result<&'a Struct, Box<Diagnostic>> {
-    let start = root.span.start..(root.span.start + 1).min(text.len());
+    let start = problems.source().character(root.span.start);
     let found = |span: &Range<usize>, message: String, help: &str| {
         Err(Box::new(
             problems

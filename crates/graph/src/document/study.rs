@@ -46,7 +46,7 @@ pub(crate) fn read_study(name: &str, bytes: &[u8]) -> Result<StudyDocument, Vec<
     let head = study
         .name
         .clone()
-        .unwrap_or(root.span.start..root.span.start + 1);
+        .unwrap_or_else(|| source.character(root.span.start));
     sections::check_version(text, study, &head, "study", &problems)
         .map_err(|problem| vec![*problem])?;
     let fields = Fields::new(text, &study.fields, &FIELDS, "a study", &mut problems);
@@ -77,7 +77,7 @@ fn study_fields<'a>(
     root: &'a Item,
     problems: &Problems,
 ) -> Result<&'a Struct, Box<Diagnostic>> {
-    let start = root.span.start..(root.span.start + 1).min(text.len());
+    let start = problems.source().character(root.span.start);
     let (name, fields) = match &root.shape {
         Shape::Struct(fields) => (fields.name.as_ref(), Some(fields)),
         Shape::Tuple(tuple) => (tuple.name.as_ref(), None),

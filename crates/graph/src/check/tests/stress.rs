@@ -243,3 +243,12 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn what_is_no_graph_is_pointed_at_by_whole_characters() {
+    for text in ["ҳt", "é", "☃(version: 1)", "é(", "\u{1f3db}", "1é"] {
+        let problems = load("g.ron", text.as_bytes(), NODES, &LoadOptions::default());
+        check_form(&problems.unwrap_err());
+        check_form(&crate::study::Study::read("s.ron", text.as_bytes()).unwrap_err());
+    }
+}
