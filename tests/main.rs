@@ -16,6 +16,7 @@ mod peer;
 mod per_vertex;
 mod picture;
 mod recomputation;
+mod rendering;
 mod require;
 mod roofs;
 mod several_components;

@@ -25,6 +25,12 @@ pub(crate) fn workspace() -> PathBuf {
         .into()
 }
 
+/// What is in a file that the test itself had written.
+#[allow(clippy::disallowed_methods, reason = "tests read their own files")]
+pub(crate) fn bytes_of(path: &Path) -> Vec<u8> {
+    std::fs::read(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
 /// An OBJ file as a mesh.
 pub(crate) fn read_obj(path: &Path) -> Result<Mesh, String> {
     #[allow(clippy::disallowed_methods, reason = "tests read their own files")]

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::sync::OnceLock;
 
-use super::workspace;
+use super::{bytes_of, workspace};
 
 /// The program, built once.
 pub(crate) fn program() -> &'static Path {
@@ -69,8 +69,7 @@ pub(crate) fn files(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
             if path.is_dir() {
                 folders.push(path);
             } else {
-                #[allow(clippy::disallowed_methods, reason = "tests read what was written")]
-                let bytes = std::fs::read(&path).expect("a file");
+                let bytes = bytes_of(&path);
                 found.push((path.strip_prefix(folder).expect("below").to_owned(), bytes));
             }
         }

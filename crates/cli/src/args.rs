@@ -12,6 +12,7 @@ use crate::commands::graph::GraphArgs;
 use crate::commands::info::InfoArgs;
 use crate::commands::new::NewArgs;
 use crate::commands::nodes::NodesArgs;
+use crate::commands::render::RenderArgs;
 use crate::commands::run::RunArgs;
 use crate::commands::study::StudyArgs;
 use crate::commands::view::ViewArgs;
@@ -40,6 +41,7 @@ pub(crate) enum Command {
     Nodes(NodesArgs),
     Info(InfoArgs),
     New(NewArgs),
+    Render(RenderArgs),
     Graph(GraphArgs),
     Cache(CacheArgs),
     Completions(CompletionsArgs),

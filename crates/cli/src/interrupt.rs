@@ -5,6 +5,10 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
+use tessgraph_geometry::Monitor;
+
+use crate::memory;
+
 /// The exit status of an interrupted command: 128 + SIGINT.
 pub(crate) const INTERRUPTED: u8 = 130;
 
@@ -45,6 +49,19 @@ pub(crate) fn on_request(wake: impl Fn() + Send + 'static) {
 /// Whether the work should stop.
 pub(crate) fn is_requested() -> bool {
     REQUESTS.load(Ordering::Relaxed) > 0
+}
+
+/// A monitor for work outside of graphs: it stops when the user asks for it.
+pub(crate) struct UntilInterrupt;
+
+impl Monitor for UntilInterrupt {
+    fn cancelled(&self) -> bool {
+        is_requested()
+    }
+
+    fn memory_left(&self) -> Option<u64> {
+        memory::left()
+    }
 }
 
 /// Removes temporary files and ends the process.

@@ -12,6 +12,7 @@ mod graph_file;
 mod interrupt;
 mod json;
 mod memory;
+mod mesh_file;
 mod outputs;
 mod picture;
 mod places;
@@ -94,6 +95,7 @@ where
         Command::Man(args) => commands::completions::man(args, &mut cx),
         Command::Cache(args) => commands::cache::cache(args, &mut cx),
         Command::New(args) => commands::new::new(args, &mut cx),
+        Command::Render(args) => commands::render::render(args, &mut cx),
     };
     if let Some(failure) = console.out_failure() {
         let message = format!("error: cannot write to stdout: {failure}\n");

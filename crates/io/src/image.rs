@@ -65,6 +65,27 @@ pub fn read_luminance(bytes: &[u8], file: &str) -> Result<Luminance, IoError> {
     })
 }
 
+/// Writes a PNG of 8 bits: `pixels` holds red, green and blue in sRGB, row by row
+/// from the top.
+///
+/// Cost: O(pixels).
+///
+/// # Panics
+/// If there are not three bytes for each pixel, or no pixels.
+pub fn write_png([width, height]: [u32; 2], pixels: &[u8]) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, width, height);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
+    let mut writer = encoder.write_header().expect("a size that is not zero");
+    writer
+        .write_image_data(pixels)
+        .expect("three bytes for each pixel, and memory to write to");
+    drop(writer);
+    bytes
+}
+
 fn fault(file: &str, kind: FaultKind, cause: String, help: &str) -> IoError {
     IoError::Fault(Box::new(Fault {
         file: file.to_owned(),

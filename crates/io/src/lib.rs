@@ -42,7 +42,7 @@ mod hostile;
 pub use error::{Fault, FaultKind, IoError, Place};
 pub use format::Format;
 pub use gltf::{GlbColors, GlbNormals, GlbOptions, viridis, write_glb};
-pub use image::{Luminance, read_luminance};
+pub use image::{Luminance, read_luminance, write_png};
 pub use obj::{ObjOptions, write_mtl, write_obj};
 pub use ply::{PlyOptions, write_ply};
 pub use read::{Loaded, ReadOptions, Resolve, ResolveError, no_files, read};

@@ -8,6 +8,7 @@ pub(crate) mod graph;
 pub(crate) mod info;
 pub(crate) mod new;
 pub(crate) mod nodes;
+pub(crate) mod render;
 pub(crate) mod run;
 pub(crate) mod study;
 pub(crate) mod view;

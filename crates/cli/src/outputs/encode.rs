@@ -5,17 +5,18 @@ use std::path::PathBuf;
 use serde_json::{Map, Value as Json, json};
 use tessgraph_geometry::digest::{Digest, Hasher};
 use tessgraph_geometry::glam::DVec3;
-use tessgraph_geometry::{Attribute, AttributeValues, Domain, Mesh, Monitor, Quantity};
+use tessgraph_geometry::{Attribute, AttributeValues, Domain, Mesh, Quantity};
 use tessgraph_graph::{Plan, Units, Value};
 use tessgraph_io::{
     Format, GlbNormals, GlbOptions, IoError, ObjOptions, PlyOptions, StlOptions, Written,
-    write_glb, write_mtl, write_obj, write_ply, write_stl,
+    write_glb, write_mtl, write_obj, write_ply, write_png, write_stl,
 };
+use tessgraph_render::{DrawOptions, draw};
 
 use super::format::FileFormat;
 use super::tables::{csv_text, json_text};
 use super::target::Target;
-use crate::interrupt;
+use crate::interrupt::UntilInterrupt;
 use crate::json::number;
 
 /// The first line of a material library: a file that begins otherwise is not
@@ -36,15 +37,6 @@ pub(super) struct Failure {
     pub(super) help: Option<String>,
 }
 
-/// Stops writers when the user asks for it.
-struct UntilInterrupt;
-
-impl Monitor for UntilInterrupt {
-    fn cancelled(&self) -> bool {
-        interrupt::is_requested()
-    }
-}
-
 /// The bytes of an output. OBJ, STL and PLY carry no unit and are written in
 /// the graph's; glTF is in metres, and remembers what it was made from.
 pub(super) fn encode(
@@ -58,6 +50,7 @@ pub(super) fn encode(
         (FileFormat::Mesh(format), Value::Mesh(mesh)) => {
             return encode_mesh(plan, target, format, mesh, provenance);
         }
+        (FileFormat::Png, Value::Mesh(mesh)) => return encode_picture(target, mesh),
         (FileFormat::Json, value) => json_text(value, quantity, plan.units),
         (FileFormat::Csv, value) => csv_text(value, plan.units),
         _ => None,
@@ -100,6 +93,20 @@ pub(super) fn made_from(plan: &Plan, target: &Target, value: Digest, provenance:
         }
     }
     hasher.finish()
+}
+
+/// A picture as [`DrawOptions`] has it by default: the colours are the mesh's own.
+fn encode_picture(target: &Target, mesh: &Mesh) -> Result<Encoded, Failure> {
+    let picture = draw(mesh, &DrawOptions::default(), &UntilInterrupt);
+    let picture = picture.map_err(|error| Failure {
+        message: error.to_string(),
+        help: None,
+    })?;
+    let bytes = write_png(picture.size(), picture.pixels());
+    Ok(Encoded {
+        files: vec![(target.path.clone(), bytes)],
+        warnings: Vec::new(),
+    })
 }
 
 fn encode_mesh(

@@ -8,6 +8,8 @@ use tessgraph_io::Format;
 pub(crate) enum FileFormat {
     /// A mesh, through `tessgraph_io`.
     Mesh(Format),
+    /// A picture of a mesh.
+    Png,
     /// Numbers and texts as JSON.
     Json,
     /// Rows of numbers and texts.
@@ -21,6 +23,7 @@ impl FileFormat {
         let (stem, extension) = name.rsplit_once('.')?;
         match extension.to_ascii_lowercase().as_str() {
             _ if stem.is_empty() => None,
+            "png" => Some(Self::Png),
             "json" => Some(Self::Json),
             "csv" => Some(Self::Csv),
             _ => Format::from_name(name)
@@ -36,6 +39,7 @@ impl FileFormat {
             Self::Mesh(Format::Obj) => "obj",
             Self::Mesh(Format::Stl) => "stl",
             Self::Mesh(Format::Ply) => "ply",
+            Self::Png => "png",
             Self::Json => "json",
             Self::Csv => "csv",
         }
@@ -49,6 +53,7 @@ impl FileFormat {
             Self::Mesh(Format::Obj) => 1,
             Self::Mesh(Format::Stl) => 1,
             Self::Mesh(Format::Ply) => 1,
+            Self::Png => 1,
             Self::Json => 1,
             Self::Csv => 1,
         }
@@ -57,9 +62,8 @@ impl FileFormat {
     /// Whether a value of this kind can be written.
     pub(crate) fn holds(self, kind: Kind) -> bool {
         match (self, kind) {
-            (Self::Mesh(_), Kind::Mesh) | (Self::Csv, Kind::Table | Kind::Field | Kind::Report) => {
-                true
-            }
+            (Self::Mesh(_) | Self::Png, Kind::Mesh) => true,
+            (Self::Csv, Kind::Table | Kind::Field | Kind::Report) => true,
             (Self::Json, Kind::List(item)) => self.holds(*item),
             (Self::Json, kind) => is_plain(kind),
             _ => false,
@@ -86,7 +90,7 @@ fn is_plain(kind: Kind) -> bool {
 /// The extensions that a value of this kind can be written with, best first.
 pub(crate) fn extensions_for(kind: Kind) -> &'static [&'static str] {
     match kind {
-        Kind::Mesh => &[".glb", ".obj", ".stl", ".ply"],
+        Kind::Mesh => &[".glb", ".obj", ".stl", ".ply", ".png"],
         Kind::Table | Kind::Field => &[".csv", ".json"],
         Kind::Report => &[".json", ".csv"],
         kind if FileFormat::Json.holds(kind) => &[".json"],
@@ -131,7 +135,7 @@ mod tests {
             NUMBERS,
         ] {
             let offered = extensions_for(kind);
-            for extension in [".glb", ".obj", ".stl", ".ply", ".json", ".csv"] {
+            for extension in [".glb", ".obj", ".stl", ".ply", ".png", ".json", ".csv"] {
                 let format = FileFormat::of_path(&format!("a{extension}")).unwrap();
                 assert_eq!(
                     format.holds(kind),
