@@ -74,13 +74,33 @@ fn f074_an_address_space_limit() {
     done.refused(&["it needs about", "MB are left"]);
     let desk = Desk::nodes("\"out\": Grid(cells: (60, 60))");
     desk.limited(SMALL, &["run", "g.ron"]).made();
-    // A node that does not ask first meets the allocator's limit instead.
-    let list = vec!["\"a\""; 600].join(",");
-    let desk = Desk::nodes(&format!(
-        "\"a\": Grid(cells: (120, 120)), \"out\": JoinMeshes(meshes: [{list}])"
-    ));
+    // Work that does not ask first meets the allocator's limit instead.
+    let desk = Desk::nodes(
+        "\"a\": Grid(cells: (1300, 1300)), \"c\": CheckIntersections(mesh: \"a\"), \
+         \"out\": Transform(mesh: \"a\", translate: (0, 0, \"c.pairs\"))",
+    );
     desk.limited(SMALL, &["run", "g.ron"]).refused(&["MB"]);
     assert!(!desk.path("out").exists());
+}
+
+#[test]
+fn f072_meshes_made_of_meshes() {
+    let list = vec!["\"a\""; 2000].join(",");
+    let many = format!("JoinMeshes(meshes: [{list}])");
+    let made = "TriangulateFaces(mesh: \"b\"), SplitIntoQuads(mesh: \"b\"), FanFaces(mesh: \"b\"), \
+         FrameFaces(mesh: \"b\"), WeldVertices(mesh: \"b\"), DualMesh(mesh: \"b\"), \
+         ExtrudeFaces(mesh: \"b\", height: 1)";
+    for node in made
+        .split("), ")
+        .map(|node| format!("{})", node.trim_end_matches(')')))
+        .chain([many])
+    {
+        let desk = Desk::nodes(&format!(
+            "\"a\": Grid(cells: (120, 120)), \"b\": Grid(cells: (700, 700)), \"out\": {node}"
+        ));
+        let done = desk.run(&["run", "g.ron", "--no-cache", "--max-memory", "100MB"]);
+        done.refused(&["it needs about", "MB are left"]);
+    }
 }
 
 #[test]

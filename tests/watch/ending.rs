@@ -63,18 +63,18 @@ fn no_input_ends_it() {
 #[test]
 fn too_large_a_result_ends_only_its_run() {
     let (_folder, mut watch) = Watch::on_grid(2, &["--max-memory", "80MB"]);
-    // A grid asks first, and fails; joining does not, and ends the process,
-    // which starts again in its own place.
-    let joined = |text: String| {
-        let list = vec!["\"grid\""; 60].join(", ");
-        let join =
-            format!("\"size\": MeasureMesh(mesh: \"all\"), \"all\": JoinMeshes(meshes: [{list}])");
-        text.replace("\"size\": MeasureMesh(mesh: \"grid\")", &join)
+    // A grid asks first, and fails; looking for crossings does not, and ends the
+    // process, which starts again in its own place.
+    let crossed = |text: String| {
+        let nodes = "\"crossings\": CheckIntersections(mesh: \"grid\"), \
+             \"moved\": Transform(mesh: \"grid\", translate: (0, 0, \"crossings.pairs\")), \
+             \"size\": MeasureMesh(mesh: \"moved\")";
+        text.replace("\"size\": MeasureMesh(mesh: \"grid\")", nodes)
     };
     for (faces, text, told) in [
         (3, graph(5_000_000), "it needs about"),
-        (4, joined(graph(20_000)), "out_of_memory"),
-        (5, joined(graph(25_000)), "out_of_memory"),
+        (4, crossed(graph(450_000)), "out_of_memory"),
+        (5, crossed(graph(500_000)), "out_of_memory"),
     ] {
         write(&watch.path("g.ron"), &text);
         assert_eq!(watch.next()["ok"], false);

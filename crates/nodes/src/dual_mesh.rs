@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use crate::support::memory::afford;
 use tessgraph_geometry::domains::{self, DualBorder};
 use tessgraph_geometry::{Mesh, list_ids};
 use tessgraph_graph::{EvalCx, Node, NodeError};
@@ -45,6 +46,8 @@ impl Node for DualMesh {
     type Output = Arc<Mesh>;
 
     fn eval(self, cx: &EvalCx<'_>) -> Result<Self::Output, NodeError> {
+        // As many corners, and the rings they are found by.
+        afford(4, [&*self.mesh], cx)?;
         let dual = domains::dual(&self.mesh, self.border.into())?;
         if !dual.skipped.is_empty() {
             cx.warn(format!(

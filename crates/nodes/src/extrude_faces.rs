@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use crate::support::memory::afford;
 use tessgraph_geometry::domains::{self, ExtrudeMode, ExtrudeOptions, chosen_faces};
 use tessgraph_geometry::{Amount, Directions, Mesh};
 use tessgraph_graph::{EvalCx, Node, NodeError};
@@ -60,6 +61,8 @@ impl Node for ExtrudeFaces {
     fn eval(self, cx: &EvalCx<'_>) -> Result<Self::Output, NodeError> {
         let chosen = chosen_faces(&self.mesh, &self.faces)
             .map_err(|error| NodeError::from(error).at_input("faces"))?;
+        // A wall for each corner, and a cap.
+        afford(6, [&*self.mesh], cx)?;
         let options = ExtrudeOptions {
             mode: self.mode.into(),
             height: self.height,

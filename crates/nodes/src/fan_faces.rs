@@ -7,6 +7,7 @@ use tessgraph_geometry::{Amount, Mesh};
 use tessgraph_graph::{EvalCx, Node, NodeError};
 use tessgraph_macros::Inputs;
 
+use crate::support::memory::afford;
 use crate::triangulate_faces::OrderChoice;
 
 /// Replaces each face by triangles from its edges to a centre.
@@ -37,9 +38,11 @@ pub(crate) struct FanFaces {
 impl Node for FanFaces {
     type Output = Arc<Mesh>;
 
-    fn eval(self, _: &EvalCx<'_>) -> Result<Self::Output, NodeError> {
+    fn eval(self, cx: &EvalCx<'_>) -> Result<Self::Output, NodeError> {
         let chosen = chosen_faces(&self.mesh, &self.faces)
             .map_err(|error| NodeError::from(error).at_input("faces"))?;
+        // A triangle for each corner.
+        afford(4, [&*self.mesh], cx)?;
         let fan = domains::fan_faces(&self.mesh, &chosen, self.order.into())?;
         Ok(Arc::new(fan))
     }

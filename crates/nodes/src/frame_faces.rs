@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use crate::support::memory::afford;
 use tessgraph_geometry::domains::{self, Fill, FrameOptions, Inset, chosen_faces};
 use tessgraph_geometry::{Amount, Mesh, list_ids};
 use tessgraph_graph::{EvalCx, Node, NodeError};
@@ -83,6 +84,8 @@ impl Node for FrameFaces {
     fn eval(self, cx: &EvalCx<'_>) -> Result<Self::Output, NodeError> {
         let chosen = chosen_faces(&self.mesh, &self.faces)
             .map_err(|error| NodeError::from(error).at_input("faces"))?;
+        // A quad for each corner, and two vertices.
+        afford(6, [&*self.mesh], cx)?;
         let width = match self.inset {
             InsetChoice::Constant => self.width,
             _ => self.factor,

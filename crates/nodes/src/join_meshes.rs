@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use crate::support::memory::afford;
 use tessgraph_geometry::{Mesh, join};
 use tessgraph_graph::{EvalCx, Node, NodeError};
 use tessgraph_macros::Inputs;
@@ -27,11 +28,13 @@ pub(crate) struct JoinMeshes {
 impl Node for JoinMeshes {
     type Output = Arc<Mesh>;
 
-    fn eval(self, _: &EvalCx<'_>) -> Result<Self::Output, NodeError> {
+    fn eval(self, cx: &EvalCx<'_>) -> Result<Self::Output, NodeError> {
         if self.meshes.is_empty() {
             return Err(NodeError::new("there is nothing to join").at_input("meshes"));
         }
         let meshes: Vec<&Mesh> = self.meshes.iter().map(Arc::as_ref).collect();
+        // Once as parts of attributes, and once whole.
+        afford(2, meshes.iter().copied(), cx)?;
         Ok(Arc::new(join(&meshes)?))
     }
 }

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use crate::support::memory::afford;
 use tessgraph_geometry::{Amount, Directions, Mesh, offset_mesh};
 use tessgraph_graph::{EvalCx, Node, NodeError};
 use tessgraph_macros::Inputs;
@@ -38,6 +39,8 @@ impl Node for OffsetMesh {
     type Output = Arc<Mesh>;
 
     fn eval(self, cx: &EvalCx<'_>) -> Result<Self::Output, NodeError> {
+        // Two sides, and walls between them.
+        afford(4, [&*self.mesh], cx)?;
         let (outward, inward) = (&self.outward, &self.inward);
         let shell = offset_mesh(&self.mesh, &self.directions, outward, inward, cx.monitor())?;
         Ok(Arc::new(shell))

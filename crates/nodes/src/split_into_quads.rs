@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use crate::support::memory::afford;
 use tessgraph_geometry::{Mesh, domains, list_ids};
 use tessgraph_graph::{EvalCx, Node, NodeError};
 use tessgraph_macros::Inputs;
@@ -29,6 +30,8 @@ impl Node for SplitIntoQuads {
     type Output = Arc<Mesh>;
 
     fn eval(self, cx: &EvalCx<'_>) -> Result<Self::Output, NodeError> {
+        // A quad for each corner, and the edges they share.
+        afford(6, [&*self.mesh], cx)?;
         let split = domains::split_into_quads(&self.mesh)?;
         if !split.folded.is_empty() {
             cx.warn(format!(

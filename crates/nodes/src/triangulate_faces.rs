@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use crate::support::memory::afford;
 use tessgraph_geometry::domains::{self, PieceOrder, chosen_faces};
 use tessgraph_geometry::{Amount, Mesh};
 use tessgraph_graph::{EvalCx, Node, NodeError};
@@ -45,9 +46,10 @@ pub(crate) enum OrderChoice {
 impl Node for TriangulateFaces {
     type Output = Arc<Mesh>;
 
-    fn eval(self, _: &EvalCx<'_>) -> Result<Self::Output, NodeError> {
+    fn eval(self, cx: &EvalCx<'_>) -> Result<Self::Output, NodeError> {
         let chosen = chosen_faces(&self.mesh, &self.faces)
             .map_err(|error| NodeError::from(error).at_input("faces"))?;
+        afford(3, [&*self.mesh], cx)?;
         let cut = domains::triangulate_faces(&self.mesh, &chosen, self.order.into())?;
         Ok(Arc::new(cut))
     }

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use crate::support::memory::afford;
 use tessgraph_geometry::{Mesh, weld_border_vertices, weld_vertices};
 use tessgraph_graph::{EvalCx, Node, NodeError};
 use tessgraph_macros::{Inputs, Outputs};
@@ -48,6 +49,7 @@ impl Node for WeldVertices {
     type Output = WeldedMesh;
 
     fn eval(self, cx: &EvalCx<'_>) -> Result<Self::Output, NodeError> {
+        afford(3, [&*self.mesh], cx)?;
         let (mesh, distance, monitor) = (&self.mesh, self.distance, cx.monitor());
         let welded = match self.border_only {
             true => weld_border_vertices(mesh, distance, monitor)?,

@@ -3,3 +3,4 @@
 pub(crate) mod arrayed;
 pub(crate) mod choice_of_components;
 pub(crate) mod elements;
+pub(crate) mod memory;
