@@ -1,5 +1,7 @@
 //! What is shown of a graph.
 
+use std::collections::BTreeSet;
+
 use serde_json::{Value, json};
 
 use super::{GRAPH, folder_with, write};
@@ -142,6 +144,29 @@ fn fields_lie_on_the_mesh_they_belong_to() {
     );
     check_buffers(&server, &shown);
     assert_eq!(shown["mesh"]["scale"], 100.0);
+}
+
+#[test]
+fn fields_of_variants_side_by_side_are_not_mixed() {
+    let folder = folder_with(
+        r#"Graph(version: 1, nodes: {
+            "base": Grid(cells: (3, 2)),
+            "a": Transform(mesh: "base", translate: (0, 0, 1)),
+            "b": Transform(mesh: "base", translate: (0, 0, 2)),
+            "of_base": CheckPlanarity(mesh: "base"), "of_a": CheckPlanarity(mesh: "a"),
+            "of_b": CheckPlanarity(mesh: "b"),
+        }, outputs: {"a.obj": "a", "base.json": "of_base", "a.json": "of_a", "b.json": "of_b"})"#,
+    );
+    let server = Server::start(folder.path(), "g.ron", &["--port", "0"]);
+    let shown = server.open().any("shown");
+    assert_eq!(shown["node"], "a");
+    let fields = shown["fields"].as_array().expect("fields");
+    let nodes: BTreeSet<_> = fields
+        .iter()
+        .filter_map(|field| field["node"].as_str())
+        .collect();
+    // What `a` was made from has the same faces; so has `b`, but it is another roof.
+    assert_eq!(nodes, BTreeSet::from(["of_a", "of_base"]));
 }
 
 /// Asks for a result, and gives the picture of it.

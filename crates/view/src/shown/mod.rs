@@ -119,6 +119,30 @@ fn mesh_inputs(plan: &Plan, node: usize) -> Vec<ResultRef> {
         .collect()
 }
 
+/// For each node whether it leads to `node`, follows from it, or is it.
+fn kin(plan: &Plan, node: usize) -> Vec<bool> {
+    let needed = |node: usize| {
+        let inputs = plan.nodes[node].inputs.iter();
+        inputs.flat_map(|input| input.origin.results())
+    };
+    let (mut leads, mut follows) = (vec![false; plan.nodes.len()], vec![false; plan.nodes.len()]);
+    (leads[node], follows[node]) = (true, true);
+    // Each node comes after all that it depends on.
+    for from in (0..=node).rev() {
+        if leads[from] {
+            needed(from).for_each(|result| leads[result.node] = true);
+        }
+    }
+    for from in node + 1..plan.nodes.len() {
+        follows[from] = needed(from).any(|result| follows[result.node]);
+    }
+    leads
+        .iter()
+        .zip(&follows)
+        .map(|(&leads, &follows)| leads || follows)
+        .collect()
+}
+
 /// A result of an evaluation, and what is known about it.
 struct Exhibit<'a> {
     plan: &'a Plan,
@@ -249,10 +273,12 @@ impl Gallery {
     }
 
     /// The fields and directions that lie on the mesh: those of nodes that took
-    /// it, or one with the same faces.
+    /// it, or one with the same faces that it was made from or that was made of it.
+    /// Variants side by side have the same faces, too, and are something else.
     fn laid_over(&self, exhibit: &Exhibit<'_>, mesh: &Arc<Mesh>) -> LaidOver {
         let (plan, evaluation) = (exhibit.plan, exhibit.evaluation);
         let topology = mesh.topology().digest();
+        let kin = kin(plan, exhibit.result.node);
         let mut found = LaidOver::default();
         for (node, planned) in plan.nodes.iter().enumerate() {
             let results = planned.spec.outputs.iter().enumerate();
@@ -262,7 +288,8 @@ impl Gallery {
                     continue;
                 }
                 let takes = *takes.get_or_insert_with(|| {
-                    let mut inputs = mesh_inputs(plan, node).into_iter();
+                    let inputs = mesh_inputs(plan, node).into_iter();
+                    let mut inputs = inputs.filter(|input| kin[input.node]);
                     inputs.any(|input| self.topology_of(evaluation, input) == Some(topology))
                 });
                 if !takes {
