@@ -86,11 +86,12 @@ pub(crate) struct Wish {
     pub(crate) again: Option<Cause>,
 }
 
-/// Does the work at once unless `waits`, and again after every change, until the
+/// Does the work at once unless `waits`, which is asked when the graph is already
+/// watched, and again after every change, until the
 /// mailbox says to stop.
 pub(crate) fn follow<'a, W: Work<'a>>(
     watched: &Watched<'a>,
-    waits: bool,
+    waits: impl FnOnce() -> bool,
     mailbox: &Mailbox,
     work: W,
 ) -> u8 {
@@ -103,7 +104,8 @@ pub(crate) fn follow<'a, W: Work<'a>>(
             touched: BTreeSet::new(),
             unlooked: BTreeSet::new(),
             running: None,
-            again: !waits,
+            // After the places: what happens from now on is told.
+            again: !waits(),
             cause: Cause::File(watched.graph.to_owned()),
         };
         watcher.go(scope, mailbox)
@@ -253,6 +255,7 @@ impl<'s, 'a: 's, W: Work<'a>> Watcher<'s, 'a, W> {
             return;
         }
         self.again = false;
+        resume::begins();
         self.places.dependencies.begin();
         let post = self.post.clone();
         let control = Arc::new(Control {

@@ -19,12 +19,12 @@ pub(crate) fn watch<'a>(
         args,
         session,
         live,
-        is_first: !args.resume,
+        is_first: args.resume.is_none(),
         warned: false,
         cx,
     };
     resume::arm();
-    if args.resume {
+    if args.resume.is_some() {
         rerun.tell("waiting for a change of the graph\n");
         if args.report == ReportFormat::Json {
             // The report of the run that could not end by itself.
@@ -36,7 +36,9 @@ pub(crate) fn watch<'a>(
         allowed: &args.engine.allow,
         poll: args.poll,
     };
-    follow(&watched, args.resume, mailbox, rerun)
+    // What was saved while the program began anew was told to nobody.
+    let waits = || { args.resume }.is_some_and(|began| !resume::is_newer(&args.graph, began));
+    follow(&watched, waits, mailbox, rerun)
 }
 
 /// Making the outputs whenever something has changed.

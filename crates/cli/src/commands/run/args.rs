@@ -18,9 +18,9 @@ pub(crate) struct RunArgs {
     /// Looks for changes twice a second, where the system tells of none: on network drives
     #[arg(long, requires = "watch")]
     pub(crate) poll: bool,
-    /// Goes on watching after a run that took too much memory
-    #[arg(long, requires = "watch", hide = true)]
-    pub(crate) resume: bool,
+    /// Goes on watching after a run that took too much memory; milliseconds of 1970 when it began
+    #[arg(long, value_name = "MS", requires = "watch", hide = true)]
+    pub(crate) resume: Option<u64>,
     /// Gives a parameter another value for this run
     #[arg(long, value_name = "NAME=VALUE", value_parser = setting)]
     pub(crate) set: Vec<Setting>,

@@ -70,7 +70,7 @@ pub(crate) fn view(args: &ViewArgs, cx: &mut Context<'_, '_>) -> u8 {
         allowed: &args.engine.allow,
         poll: args.poll,
     };
-    let status = follow(&watched, false, &mailbox, viewer);
+    let status = follow(&watched, || false, &mailbox, viewer);
     drop(server);
     studio.close();
     status
