@@ -108,3 +108,10 @@ fn meshes_with_a_spike_stay_finite() {
         assert!(moved.positions().iter().all(|p| p.is_finite()), "{place}");
     }
 }
+
+#[test]
+fn thicknesses_whose_squares_overflow() {
+    // Found by fuzzing: the mean of the squared differences was infinite.
+    let measured = "\"out\": MeasureThickness(mesh: \"base\", base: \"base\", thickness: 1e300)";
+    assert_says(measured, PLATE, &["squares overflow"]);
+}

@@ -93,6 +93,11 @@ impl Node for MeasureThickness {
             bins: self.bins as usize,
         };
         let found = measure::measure_thickness(&self.mesh, &base, &options, cx.monitor())?;
+        if !(found.mean.is_finite() && found.rms_error.is_finite()) {
+            let message =
+                "the distances, or those wanted, are so large that their squares overflow";
+            return Err(NodeError::new(message).with_help("measure a smaller mesh and thickness"));
+        }
         Ok(Thickness {
             vertices: found.vertices,
             ignored: found.ignored,
