@@ -19,7 +19,7 @@ const MEMORY: u64 = 64 << 20;
 
 /// Polls after which an evaluation is stopped, so that a graph that asks for a
 /// thousand million passes counts as what it is, and not as a hang.
-const POLLS: u64 = 20_000;
+const POLLS: u64 = 1_000;
 
 /// Reads a mesh. What is read must be finite, and come back as it was from an OBJ
 /// file; what is refused must say why and what to do.
