@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use tessgraph_geometry::{AttributeValues, Domain, Field, GeometryError, Mesh, Quantity};
+use tessgraph_geometry::{Domain, Field, GeometryError, Mesh, Quantity};
 use tessgraph_graph::{EvalCx, Node, NodeError};
 use tessgraph_macros::Inputs;
 
@@ -37,11 +37,9 @@ impl Node for AttributeField {
 
     fn eval(self, _: &EvalCx<'_>) -> Result<Self::Output, NodeError> {
         let domain = self.on.domain();
-        let values = match self.mesh.attribute(&self.name, domain).map(|a| a.values()) {
-            Some(AttributeValues::Number(values)) => values.to_vec(),
-            // Whole numbers above 2^53 are ids, not quantities to calculate with.
-            Some(AttributeValues::Integer(values)) => values.iter().map(|&n| n as f64).collect(),
-            _ => return Err(NodeError::from(self.missing(domain)).at_input("name")),
+        let attribute = self.mesh.attribute(&self.name, domain);
+        let Some(values) = attribute.and_then(|found| found.values().numbers()) else {
+            return Err(NodeError::from(self.missing(domain)).at_input("name"));
         };
         Ok(Arc::new(Field::new(domain, Quantity::Number, values)?))
     }

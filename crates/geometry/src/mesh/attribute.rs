@@ -51,6 +51,21 @@ impl AttributeValues {
         }
     }
 
+    /// The values as numbers to calculate with; `None` of vectors. Whole numbers
+    /// above 2^53, which would be ids, are rounded.
+    pub fn numbers(&self) -> Option<Vec<f64>> {
+        match self {
+            Self::Number(values) => Some(values.to_vec()),
+            Self::Integer(values) => Some(values.iter().map(|&number| number as f64).collect()),
+            Self::Vector2(_) | Self::Vector3(_) => None,
+        }
+    }
+
+    /// Whether the values are numbers, not vectors.
+    pub fn is_numeric(&self) -> bool {
+        matches!(self, Self::Number(_) | Self::Integer(_))
+    }
+
     /// The values at `indices`, in that order, and 0 for [`u32::MAX`].
     pub(crate) fn gather_or_zero(&self, indices: &[u32]) -> Self {
         fn pick<T: Copy + Default>(values: &[T], indices: &[u32]) -> Buffer<T> {

@@ -111,11 +111,8 @@ fn left_on_edges(
 /// Sharpness stays with the coarse vertices, which come first in the fine mesh.
 fn left_at_vertices(attribute: &Attribute, refiner: &Refiner, fine: &Mesh) -> AttributeValues {
     let level = consumed_levels(refiner);
-    let mut left: Vec<f64> = match attribute.values() {
-        AttributeValues::Number(values) => values.to_vec(),
-        AttributeValues::Integer(values) => values.iter().map(|&value| value as f64).collect(),
-        _ => vec![0.0; attribute.values().len()],
-    };
+    let numbers = attribute.values().numbers();
+    let mut left = numbers.unwrap_or_else(|| vec![0.0; attribute.values().len()]);
     for sharpness in &mut left {
         *sharpness = decayed_attribute(*sharpness, level);
     }

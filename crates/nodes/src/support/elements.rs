@@ -166,21 +166,15 @@ pub(crate) fn uv(mesh: &Mesh, on: Elements) -> Result<Vec<DVec2>, NodeError> {
 /// A numeric attribute at each element: its own value where it is on that
 /// domain, else the mean over the corners.
 fn attribute(name: &str, mesh: &Mesh, on: Elements) -> Result<Vec<f64>, NodeError> {
-    let numeric = |values: &AttributeValues| match values {
-        AttributeValues::Number(values) => Some(values.to_vec()),
-        // Whole numbers above 2^53 are ids, not quantities to calculate with.
-        AttributeValues::Integer(values) => Some(values.iter().map(|&n| n as f64).collect()),
-        _ => None,
-    };
     let own = mesh.attribute(name, on.domain());
-    if let Some(values) = own.and_then(|attribute| numeric(attribute.values())) {
+    if let Some(values) = own.and_then(|attribute| attribute.values().numbers()) {
         return Ok(values);
     }
     let corners = mesh.topology().corners();
     let at_corners = [Domain::Vertex, Domain::Corner, Domain::Face]
         .iter()
         .find_map(|&domain| {
-            let values = numeric(mesh.attribute(name, domain)?.values())?;
+            let values = mesh.attribute(name, domain)?.values().numbers()?;
             Some(match domain {
                 Domain::Vertex => corners
                     .iter()
@@ -203,12 +197,7 @@ fn unknown_variable(name: &str, mesh: &Mesh) -> NodeError {
     let names: Vec<_> = mesh
         .attributes()
         .iter()
-        .filter(|attribute| {
-            matches!(
-                attribute.values(),
-                AttributeValues::Number(_) | AttributeValues::Integer(_)
-            )
-        })
+        .filter(|attribute| attribute.values().is_numeric())
         .map(|attribute| format!("`{}`", attribute.name()))
         .collect();
     let has = if names.is_empty() {
