@@ -6,7 +6,7 @@ use std::sync::Arc;
 use crate::buffer::Buffer;
 use crate::digest::{Digest, Hasher};
 use crate::mesh::Domain;
-use crate::{GeometryError, Mesh};
+use crate::{GeometryError, Mesh, parallel};
 
 /// What a number measures; decides its unit where it meets a reader.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -87,6 +87,21 @@ impl Field {
     /// The values, one per element of the domain.
     pub fn values(&self) -> &Buffer<f64> {
         &self.values
+    }
+
+    /// The smallest and the largest value; `None` of a field without values.
+    ///
+    /// Cost: O(values), in parallel.
+    pub fn range(&self) -> Option<(f64, f64)> {
+        let wider =
+            |(low, high): (f64, f64), (least, most): (f64, f64)| (low.min(least), high.max(most));
+        let nothing = || (f64::INFINITY, f64::NEG_INFINITY);
+        let one = |found, index: usize| {
+            let value = self.values[index];
+            wider(found, (value, value))
+        };
+        let found = parallel::reduce(self.values.len(), nothing, one, wider);
+        (!self.values.is_empty()).then_some(found)
     }
 
     /// The same field with every value multiplied: a change of units.
@@ -211,16 +226,12 @@ impl Amount {
         }
     }
 
-    /// The smallest and the largest number that occurs; the constant twice.
+    /// The smallest and the largest number that occurs; the constant twice, and
+    /// infinity and its opposite for a field without values.
     pub fn range(&self) -> (f64, f64) {
         match self {
             Self::Constant(number) => (*number, *number),
-            Self::Field(field) => field
-                .values
-                .iter()
-                .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &value| {
-                    (low.min(value), high.max(value))
-                }),
+            Self::Field(field) => field.range().unwrap_or((f64::INFINITY, f64::NEG_INFINITY)),
         }
     }
 }

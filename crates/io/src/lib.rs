@@ -41,7 +41,9 @@ mod hostile;
 
 pub use error::{Fault, FaultKind, IoError, Place};
 pub use format::Format;
-pub use gltf::{GlbColors, GlbNormals, GlbOptions, viridis, write_glb};
+pub use gltf::{
+    GlbColors, GlbNormals, GlbOptions, mesh_colors, place_in_range, viridis, write_glb,
+};
 pub use image::{Luminance, read_luminance, write_png};
 pub use obj::{ObjOptions, write_mtl, write_obj};
 pub use ply::{PlyOptions, write_ply};

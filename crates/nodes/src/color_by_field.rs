@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use tessgraph_geometry::{Amount, Attribute, AttributeValues, Domain, Mesh};
 use tessgraph_graph::{EvalCx, Node, NodeError};
-use tessgraph_io::viridis;
+use tessgraph_io::{place_in_range, viridis};
 use tessgraph_macros::{Inputs, Outputs};
 
 /// Colours a mesh by a field, from dark blue (low) to yellow (high).
@@ -50,14 +50,7 @@ impl Node for ColorByField {
     fn eval(self, _: &EvalCx<'_>) -> Result<Self::Output, NodeError> {
         let domain = self.field.domain_or(Domain::Vertex);
         let field = self.field.on(&self.mesh, domain)?;
-        let values = field.values();
-        let range = values
-            .iter()
-            .fold(None, |range: Option<(f64, f64)>, &value| {
-                let (low, high) = range.unwrap_or((value, value));
-                Some((low.min(value), high.max(value)))
-            });
-        let (least, most) = range.unwrap_or_default();
+        let (least, most) = field.range().unwrap_or_default();
         let (low, high) = (self.low.unwrap_or(least), self.high.unwrap_or(most));
         if low > high {
             return Err(
@@ -66,15 +59,8 @@ impl Node for ColorByField {
                     .at_input("low"),
             );
         }
-        // A field that is the same everywhere takes the middle of the map.
-        let along = |value: f64| {
-            if high > low {
-                (value - low) / (high - low)
-            } else {
-                0.5
-            }
-        };
-        let colors = values.iter().map(|&value| viridis(along(value))).collect();
+        let color = |&value: &f64| viridis(place_in_range(value, (low, high)));
+        let colors = field.values().iter().map(color).collect();
         let values = AttributeValues::Vector3(colors);
         let attribute = Attribute::new("color", domain, values);
         let mesh = Arc::new(Mesh::clone(&self.mesh).with_attribute(attribute)?);

@@ -1,8 +1,8 @@
 //! What the colours of a picture mean.
 
 use tessgraph_geometry::glam::DVec3;
-use tessgraph_geometry::{AttributeValues, Domain, Field, GeometryError, Mesh};
-use tessgraph_io::viridis;
+use tessgraph_geometry::{Domain, Field, GeometryError, Mesh};
+use tessgraph_io::{mesh_colors, place_in_range, viridis};
 
 use crate::legend::Legend;
 
@@ -86,11 +86,10 @@ impl<'a> Colors<'a> {
 }
 
 fn of_materials(mesh: &Mesh) -> Of {
-    let on = |domain| mesh.attribute("color", domain).map(|color| color.values());
-    match (on(Domain::Vertex), on(Domain::Face)) {
-        (Some(AttributeValues::Vector3(colors)), _) => return Of::Vertices(colors.to_vec()),
-        (_, Some(AttributeValues::Vector3(colors))) => return Of::Faces(colors.to_vec()),
-        _ => {}
+    match mesh_colors(mesh) {
+        Some((Domain::Face, colors)) => return Of::Faces(colors.to_vec()),
+        Some((_, colors)) => return Of::Vertices(colors.to_vec()),
+        None => {}
     }
     if mesh.materials().is_empty() {
         return Of::Everything(PLASTER);
@@ -109,23 +108,14 @@ fn of_field<'a>(mesh: &Mesh, painted: &FieldPaint<'a>) -> Result<Colors<'a>, Geo
     let field = painted.field;
     field.check(mesh, field.domain())?;
     let values = field.values();
-    let spread = || {
-        let none = (f64::INFINITY, f64::NEG_INFINITY);
-        let (low, high) = { values.iter() }.fold(none, |(low, high), &v| (low.min(v), high.max(v)));
-        if low <= high { (low, high) } else { (0.0, 0.0) }
-    };
-    let (low, high) = painted.range.unwrap_or_else(spread);
-    // A field that is the same everywhere takes the middle of the map.
-    let along = |&value: &f64| match high > low {
-        true => (value - low) / (high - low),
-        false => 0.5,
-    };
+    let range = painted.range.or_else(|| field.range()).unwrap_or_default();
+    let along = |value: &f64| place_in_range(*value, range);
     let of = match field.domain() {
         Domain::Face => Of::Faces(values.iter().map(|value| viridis(along(value))).collect()),
         _ => Of::Along(values.iter().map(along).collect()),
     };
     Ok(Colors {
         of,
-        painted: Some((*painted, (low, high))),
+        painted: Some((*painted, range)),
     })
 }

@@ -1,8 +1,8 @@
 //! Colours for numbers.
 
 use glam::DVec3;
-use tessgraph_geometry::glam;
 use tessgraph_geometry::math::pow;
+use tessgraph_geometry::{AttributeValues, Domain, Mesh, glam};
 
 /// Nine colours of "viridis" (van der Walt and Smith 2015, CC0), evenly
 /// spaced, as sRGB bytes. Its lightness rises evenly, so that equal steps of a
@@ -37,6 +37,33 @@ pub fn viridis(t: f64) -> DVec3 {
     let color = |k: usize| DVec3::from(STOPS[k].map(f64::from)) / 255.0;
     let srgb = color(lower) * (1.0 - rest) + color(lower + 1) * rest;
     DVec3::from(srgb.to_array().map(linear))
+}
+
+/// Where in a colour map a value of a field belongs whose colours begin at `low`
+/// and end at `high`: 0 at `low`, 1 at `high`, and the middle, 0.5, of a range
+/// without extent.
+///
+/// ```
+/// assert_eq!(tessgraph_io::place_in_range(3.0, (1.0, 5.0)), 0.5);
+/// assert_eq!(tessgraph_io::place_in_range(3.0, (3.0, 3.0)), 0.5);
+/// ```
+pub fn place_in_range(value: f64, (low, high): (f64, f64)) -> f64 {
+    // Halved, so that the difference of huge numbers stays finite.
+    match high * 0.5 - low * 0.5 {
+        half if half > 0.0 => (value * 0.5 - low * 0.5) / half,
+        _ => 0.5,
+    }
+}
+
+/// The colours a mesh carries: its attribute `color` on vertices, else on faces,
+/// as linear red, green and blue, one per element.
+pub fn mesh_colors(mesh: &Mesh) -> Option<(Domain, &[DVec3])> {
+    [Domain::Vertex, Domain::Face]
+        .into_iter()
+        .find_map(|domain| match mesh.attribute("color", domain)?.values() {
+            AttributeValues::Vector3(colors) => Some((domain, colors.as_slice())),
+            _ => None,
+        })
 }
 
 /// Linear light of an sRGB component (IEC 61966-2-1).

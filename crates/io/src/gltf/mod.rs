@@ -28,7 +28,7 @@ use accessor::Accessors;
 use buffers::Buffers;
 use document::{Document, JsonPlace};
 
-pub use colormap::viridis;
+pub use colormap::{mesh_colors, place_in_range, viridis};
 pub use write::{GlbColors, GlbNormals, GlbOptions, write_glb};
 
 /// Reads a binary glTF file.

@@ -2,11 +2,11 @@
 
 use glam::DVec3;
 use serde_json::{Value, json};
-use tessgraph_geometry::{AttributeValues, Domain, Field, GeometryError, Mesh, glam};
+use tessgraph_geometry::{Domain, Field, GeometryError, Mesh, glam};
 
 use super::GlbColors;
 use crate::error::IoError;
-use crate::gltf::viridis;
+use crate::gltf::{mesh_colors, place_in_range, viridis};
 
 /// A stored colour: linear red, green, blue and opacity.
 pub(super) type Color = [u16; 4];
@@ -34,14 +34,11 @@ pub(super) struct Colors {
 pub(super) fn resolve(mesh: &Mesh, colors: &GlbColors<'_>) -> Result<Colors, IoError> {
     let of = match *colors {
         GlbColors::None => Of::Nothing,
-        GlbColors::Attribute => {
-            let on = |domain| mesh.attribute("color", domain).map(|color| color.values());
-            match (on(Domain::Vertex), on(Domain::Face)) {
-                (Some(AttributeValues::Vector3(colors)), _) => Of::Vertices(store(colors)),
-                (_, Some(AttributeValues::Vector3(colors))) => Of::Faces(store(colors)),
-                _ => Of::Nothing,
-            }
-        }
+        GlbColors::Attribute => match mesh_colors(mesh) {
+            Some((Domain::Face, colors)) => Of::Faces(store(colors)),
+            Some((_, colors)) => Of::Vertices(store(colors)),
+            None => Of::Nothing,
+        },
         GlbColors::Vertices(colors) => {
             check_count(mesh, Domain::Vertex, colors)?;
             Of::Vertices(store(colors))
@@ -77,33 +74,15 @@ fn of_field(
     range: Option<(f64, f64)>,
 ) -> Result<Colors, IoError> {
     field.check(mesh, field.domain())?;
-    let spread = || {
-        let (low, high) = (f64::INFINITY, f64::NEG_INFINITY);
-        field
-            .values()
-            .iter()
-            .fold((low, high), |(low, high), &value| {
-                (low.min(value), high.max(value))
-            })
-    };
-    let (low, high) = range.unwrap_or_else(spread);
-    // Halved, so that the difference of huge numbers stays finite. A field
-    // without spread takes the middle colour.
-    let along = |value: f64| match high * 0.5 - low * 0.5 {
-        half if half > 0.0 => (value * 0.5 - low * 0.5) / half,
-        _ => 0.5,
-    };
-    let colors = field
-        .values()
-        .iter()
-        .map(|&value| stored(viridis(along(value))))
-        .collect();
+    let range = range.or_else(|| field.range()).unwrap_or_default();
+    let color = |&value: &f64| stored(viridis(place_in_range(value, range)));
+    let colors = field.values().iter().map(color).collect();
     let extras = (!field.values().is_empty()).then(|| {
         json!({
             "field": {
                 "name": name,
                 "quantity": field.quantity().to_string(),
-                "range": [low, high],
+                "range": [range.0, range.1],
                 "colormap": "viridis",
             }
         })
