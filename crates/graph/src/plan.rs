@@ -135,6 +135,28 @@ impl Plan {
         self.nodes.iter().position(|node| node.name == name)
     }
 
+    /// The result that is called `node`, the node's main one, or `node.result`.
+    ///
+    /// Node names hold no dot.
+    pub fn result(&self, name: &str) -> Option<ResultRef> {
+        let (node, result) = match name.split_once('.') {
+            Some((node, result)) => (node, Some(result)),
+            None => (name, None),
+        };
+        self.result_of(node, result)
+    }
+
+    /// The result of that name of a node; its main one without a name.
+    pub fn result_of(&self, node: &str, result: Option<&str>) -> Option<ResultRef> {
+        let node = self.node_index(node)?;
+        let results = self.nodes[node].spec.outputs;
+        let result = match result {
+            Some(name) => results.iter().position(|other| other.name == name)?,
+            None => 0,
+        };
+        (result < results.len()).then_some(ResultRef { node, result })
+    }
+
     /// Which nodes these results need, themselves included; one entry per node.
     pub fn needed(&self, results: impl IntoIterator<Item = ResultRef>) -> Vec<bool> {
         let mut needed = vec![false; self.nodes.len()];

@@ -5,9 +5,9 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use clap::Args;
-use tessgraph_geometry::{AttributeValues, Domain, Field, Mesh, Quantity};
+use tessgraph_geometry::{Domain, Field, Mesh, Quantity};
 use tessgraph_graph::names::did_you_mean;
-use tessgraph_graph::plan::{PlanNode, ResultRef};
+use tessgraph_graph::plan::ResultRef;
 use tessgraph_graph::value::Kind;
 use tessgraph_graph::{Evaluation, Plan, Units, Value};
 use tessgraph_io::{Format, write_png};
@@ -270,11 +270,8 @@ fn shown(plan: &Plan, name: Option<&str>, cx: &mut Context<'_, '_>) -> Result<Re
 
 /// The result called `node` or `node.result`, if it is of that kind.
 fn find(plan: &Plan, name: &str, kind: Kind) -> Option<ResultRef> {
-    let named = |node: &PlanNode, result: usize| {
-        let whole = format!("{}.{}", node.name, node.spec.outputs[result].name);
-        whole == name || (result == 0 && node.name == name)
-    };
-    results(plan, kind).find(|result| named(&plan.nodes[result.node], result.result))
+    let is_fitting = |result: &ResultRef| plan.result_spec(*result).kind == kind;
+    plan.result(name).filter(is_fitting)
 }
 
 /// All results of that kind.
@@ -316,11 +313,7 @@ fn of_attribute(mesh: &Mesh, name: &str, units: Option<Units>) -> Option<Painted
     let field = [Domain::Face, Domain::Vertex]
         .into_iter()
         .find_map(|domain| {
-            let values = match mesh.attribute(name, domain)?.values() {
-                AttributeValues::Number(values) => values.to_vec(),
-                AttributeValues::Integer(values) => values.iter().map(|&n| n as f64).collect(),
-                _ => return None,
-            };
+            let values = mesh.attribute(name, domain)?.values().numbers()?;
             Field::new(domain, Quantity::Number, values).ok()
         })?;
     Some(painted(Arc::new(field), name, Quantity::Number, units))
@@ -343,16 +336,9 @@ fn painted(field: Arc<Field>, name: &str, quantity: Quantity, units: Option<Unit
 
 fn no_field(mesh: &Mesh, name: &str, results: &[String], cx: &mut Context<'_, '_>) -> u8 {
     let message = format!("there is no field `{}` for this mesh", printable(name));
-    let is_number = |values: &AttributeValues| {
-        matches!(
-            values,
-            AttributeValues::Number(_) | AttributeValues::Integer(_)
-        )
-    };
-    let attributes = mesh
-        .attributes()
-        .iter()
-        .filter(|attribute| is_number(attribute.values()) && attribute.domain() != Domain::Corner);
+    let attributes = mesh.attributes().iter().filter(|attribute| {
+        attribute.values().is_numeric() && attribute.domain() != Domain::Corner
+    });
     let names: Vec<_> = { attributes.map(|attribute| attribute.name().to_owned()) }
         .chain(results.iter().cloned())
         .collect();

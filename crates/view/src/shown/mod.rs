@@ -54,17 +54,6 @@ pub struct Subject {
     pub fields: Vec<(String, Arc<Field>)>,
 }
 
-/// The result of that name; the node's main one without a name.
-pub fn find(plan: &Plan, node: &str, result: Option<&str>) -> Option<ResultRef> {
-    let node = plan.node_index(node)?;
-    let results = plan.nodes[node].spec.outputs;
-    let result = match result {
-        Some(name) => results.iter().position(|other| other.name == name)?,
-        None => 0,
-    };
-    (result < results.len()).then_some(ResultRef { node, result })
-}
-
 /// What is shown unless somebody asks for something else: the first output that
 /// is a mesh, else the first.
 pub fn default_result(plan: &Plan) -> Option<ResultRef> {
@@ -121,20 +110,14 @@ fn mesh_inputs(plan: &Plan, node: usize) -> Vec<ResultRef> {
 
 /// For each node whether it leads to `node`, follows from it, or is it.
 fn kin(plan: &Plan, node: usize) -> Vec<bool> {
-    let needed = |node: usize| {
-        let inputs = plan.nodes[node].inputs.iter();
-        inputs.flat_map(|input| input.origin.results())
-    };
-    let (mut leads, mut follows) = (vec![false; plan.nodes.len()], vec![false; plan.nodes.len()]);
-    (leads[node], follows[node]) = (true, true);
+    let leads = plan.needed([ResultRef { node, result: 0 }]);
+    let mut follows = vec![false; plan.nodes.len()];
+    follows[node] = true;
     // Each node comes after all that it depends on.
-    for from in (0..=node).rev() {
-        if leads[from] {
-            needed(from).for_each(|result| leads[result.node] = true);
-        }
-    }
     for from in node + 1..plan.nodes.len() {
-        follows[from] = needed(from).any(|result| follows[result.node]);
+        let inputs = plan.nodes[from].inputs.iter();
+        let mut needs = inputs.flat_map(|input| input.origin.results());
+        follows[from] = needs.any(|result| follows[result.node]);
     }
     leads
         .iter()

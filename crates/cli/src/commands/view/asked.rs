@@ -6,7 +6,6 @@ use tessgraph_view::pick::{measure, pick};
 use tessgraph_view::protocol::{
     Described, FromPage, Level, Notice, Picked, ResultSummary, ToPage, Value,
 };
-use tessgraph_view::shown::find;
 use tessgraph_view::{Asking, Reply};
 
 use super::edits::Refused;
@@ -88,7 +87,7 @@ impl Viewer<'_> {
     /// Has another result shown.
     fn show(&mut self, node: String, result: Option<String>, reply: &Reply) -> Wish {
         let plan = self.last.as_ref().map(|(plan, _)| plan);
-        if plan.is_some_and(|plan| find(plan, &node, result.as_deref()).is_none()) {
+        if plan.is_some_and(|plan| plan.result_of(&node, result.as_deref()).is_none()) {
             let place = result.map_or_else(|| node.clone(), |result| format!("{node}.{result}"));
             return refuse(reply, &format!("the graph has no result `{place}`"));
         }

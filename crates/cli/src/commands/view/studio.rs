@@ -12,7 +12,7 @@ use tessgraph_graph::{Diagnostic, Engine, Evaluation, NodeRun, Observer, Plan};
 use tessgraph_view::Hub;
 use tessgraph_view::outcomes::{checks, outcomes};
 use tessgraph_view::protocol::{Check, NodeOutcome, State, Status, ToPage};
-use tessgraph_view::shown::{Gallery, Picture, default_result, find, wanted};
+use tessgraph_view::shown::{Gallery, Picture, default_result, wanted};
 
 use super::ViewArgs;
 use crate::commands::run::Control;
@@ -168,7 +168,7 @@ impl<'a> Studio<'a> {
     fn compute(&self, file: GraphFile, order: &Order, control: &Control) -> Done {
         let plan = Arc::new(file.plan);
         let asked = order.shown.as_ref();
-        let asked = asked.and_then(|(node, result)| find(&plan, node, result.as_deref()));
+        let asked = asked.and_then(|(node, result)| plan.result_of(node, result.as_deref()));
         let shown = asked.or_else(|| default_result(&plan));
         let wanted = wanted(&plan, shown);
         let needed = plan.needed(wanted.iter().copied());
