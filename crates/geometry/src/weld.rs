@@ -1,11 +1,14 @@
 //! Joining vertices: those at the same place, or a given list of pairs.
 
 mod coincident;
+mod near;
+
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use glam::DVec3;
 
 use crate::parallel::in_order;
-use crate::rebuild::{Sources, rebuild, renumber};
+use crate::rebuild::{Sources, rebuild};
 use crate::{GeometryError, Mesh, Monitor, Topology, parallel};
 
 /// A mesh after vertices were joined.
@@ -106,67 +109,123 @@ pub(crate) fn merge_vertices(
     target: &[u32],
     monitor: &dyn Monitor,
 ) -> Result<Welded, GeometryError> {
-    let survives = parallel::map(target.len(), monitor, |v| target[v] as usize == v)?;
-    let (new, vertices) = renumber(&survives);
-    let new = parallel::map(target.len(), monitor, |v| new[target[v] as usize])?;
-    let renamed = |vertex: u32| new[vertex as usize];
-    let counts = parallel::map(mesh.face_count(), monitor, |face| {
-        let kept = kept_corners(mesh.face(face), renamed).count();
-        if kept < 3 { 0 } else { kept as u32 }
+    let (mut new, mut vertices) = (vec![0; target.len()], Vec::new());
+    in_order(target.len(), monitor, |v| {
+        let target = target[v] as usize;
+        new[v] = if target == v {
+            vertices.push(v as u32);
+            vertices.len() as u32 - 1
+        } else {
+            new[target]
+        };
     })?;
-    let (mut faces, mut offsets) = (Vec::new(), vec![0]);
-    for (&count, face) in counts.iter().zip(0u32..) {
-        if count > 0 {
-            faces.push(face);
-            offsets.push(offsets[offsets.len() - 1] + count);
-        }
-    }
-    let corner_count = offsets[faces.len()] as usize;
-    let run = |out: &mut [u32], of: &(dyn Fn(usize, usize) -> u32 + Sync)| {
+    let renamed = Renamed::new(mesh, &new, vertices.len(), monitor)?;
+    let new_count = vertices.len();
+    let positions = parallel::map(new_count, monitor, |v| {
+        mesh.positions()[vertices[v] as usize]
+    })?;
+    let dropped_faces = mesh.face_count() - renamed.topology.face_count();
+    let sources = Sources {
+        faces: renamed.faces,
+        corners: renamed.corners,
+        vertices: Some(vertices),
+    };
+    Ok(Welded {
+        mesh: rebuild(mesh, positions, renamed.topology, &sources)?,
+        joined: mesh.vertex_count() - new_count,
+        dropped_faces,
+        vertex_sources: sources.vertices.unwrap_or_default(),
+    })
+}
+
+/// Faces after vertices were joined, and the old faces and corners they are;
+/// `None` where nothing collapsed and these are the same.
+struct Renamed {
+    topology: Topology,
+    faces: Option<Vec<u32>>,
+    corners: Option<Vec<u32>>,
+}
+
+impl Renamed {
+    /// The faces of `mesh` with each vertex called `new[vertex]`, of `count` names.
+    fn new(
+        mesh: &Mesh,
+        new: &[u32],
+        count: usize,
+        monitor: &dyn Monitor,
+    ) -> Result<Self, GeometryError> {
+        let collapses = AtomicBool::new(false);
+        let mut corners = parallel::zeroed(mesh.corner_count());
+        let offsets = mesh.topology().offsets();
         parallel::fill_runs(
-            out,
+            &mut corners,
+            offsets,
+            monitor,
+            || (),
+            |(), face, slots| {
+                let mut previous = new[mesh.face(face)[slots.len() - 1] as usize];
+                for (slot, &vertex) in slots.iter_mut().zip(mesh.face(face)) {
+                    *slot = new[vertex as usize];
+                    if *slot == previous {
+                        collapses.store(true, Ordering::Relaxed);
+                    }
+                    previous = *slot;
+                }
+            },
+        )?;
+        if collapses.into_inner() {
+            return Self::collapsed(mesh, new, count, monitor);
+        }
+        Ok(Self {
+            topology: mesh.topology().renamed(count, corners)?,
+            faces: None,
+            corners: None,
+        })
+    }
+
+    /// The same where corners, and perhaps faces, are left out.
+    fn collapsed(
+        mesh: &Mesh,
+        new: &[u32],
+        count: usize,
+        monitor: &dyn Monitor,
+    ) -> Result<Self, GeometryError> {
+        let renamed = |vertex: u32| new[vertex as usize];
+        let counts = parallel::map(mesh.face_count(), monitor, |face| {
+            let kept = kept_corners(mesh.face(face), renamed).count();
+            if kept < 3 { 0 } else { kept as u32 }
+        })?;
+        let (mut faces, mut offsets) = (Vec::new(), vec![0]);
+        for (&count, face) in counts.iter().zip(0u32..) {
+            if count > 0 {
+                faces.push(face);
+                offsets.push(offsets[offsets.len() - 1] + count);
+            }
+        }
+        let mut sources = parallel::zeroed(offsets[faces.len()] as usize);
+        parallel::fill_runs(
+            &mut sources,
             &offsets,
             monitor,
             || (),
             |(), run, slots| {
                 let face = faces[run] as usize;
+                let start = mesh.topology().corner_range(face).start;
                 let kept = kept_corners(mesh.face(face), renamed);
                 for (slot, corner) in slots.iter_mut().zip(kept) {
-                    *slot = of(face, corner);
+                    *slot = (start + corner) as u32;
                 }
             },
-        )
-    };
-    let mut corners = parallel::zeroed(corner_count);
-    run(&mut corners, &|face, corner| {
-        renamed(mesh.face(face)[corner])
-    })?;
-    // Mostly nothing collapses, and corner values stay where they are.
-    let corner_source = if corner_count == mesh.corner_count() {
-        None
-    } else {
-        let mut source = parallel::zeroed(corner_count);
-        run(&mut source, &|face, corner| {
-            (mesh.topology().corner_range(face).start + corner) as u32
+        )?;
+        let corners = parallel::map(sources.len(), monitor, |corner| {
+            renamed(mesh.topology().corners()[sources[corner] as usize])
         })?;
-        Some(source)
-    };
-    let positions = parallel::map(vertices.len(), monitor, |v| {
-        mesh.positions()[vertices[v] as usize]
-    })?;
-    let dropped_faces = mesh.face_count() - faces.len();
-    let sources = Sources {
-        faces: (dropped_faces > 0).then_some(faces),
-        corners: corner_source,
-        vertices: Some(vertices.clone()),
-    };
-    let topology = Topology::new(vertices.len(), offsets, corners)?;
-    Ok(Welded {
-        mesh: rebuild(mesh, positions, topology, &sources)?,
-        joined: mesh.vertex_count() - vertices.len(),
-        dropped_faces,
-        vertex_sources: vertices,
-    })
+        Ok(Self {
+            topology: Topology::new(count, offsets, corners)?,
+            faces: (faces.len() < mesh.face_count()).then_some(faces),
+            corners: Some(sources),
+        })
+    }
 }
 
 /// The corners of a face that are left when its vertices are renamed: of
@@ -192,101 +251,16 @@ pub(crate) fn clusters(
     distance: f64,
     monitor: &dyn Monitor,
 ) -> Result<Vec<u32>, GeometryError> {
-    let lowest = coincident::lowest(positions, monitor)?;
     if distance <= 0.0 {
-        return Ok(lowest);
+        return coincident::lowest(positions, monitor);
     }
-    // Each place leads to a lower one or itself, as sets do.
-    let mut sets = Sets(lowest);
-    join_near(positions, distance, &mut sets, monitor)?;
+    let mut sets = near::sets(positions, distance, monitor)?;
     let mut lowest = vec![0; positions.len()];
     in_order(positions.len(), monitor, |i| {
         lowest[i] = sets.root(i as u32);
     })?;
     Ok(lowest)
 }
-
-/// Joins all pairs within `distance` by a grid whose cells are so small that
-/// all points of one cell belong together.
-fn join_near(
-    positions: &[DVec3],
-    distance: f64,
-    sets: &mut Sets,
-    monitor: &dyn Monitor,
-) -> Result<(), GeometryError> {
-    let Some(low) = positions.iter().copied().reduce(DVec3::min) else {
-        return Ok(());
-    };
-    // Below 1/sqrt(3): the cell's diagonal is shorter than the distance.
-    let side = distance * 0.577;
-    let cell_of = |p: DVec3| ((p - low) / side).floor().to_array().map(|x| x as i64);
-    let mut points: Vec<([i64; 3], u32)> = Vec::new();
-    in_order(positions.len(), monitor, |i| {
-        if sets.root(i as u32) == i as u32 {
-            points.push((cell_of(positions[i]), i as u32));
-        }
-    })?;
-    parallel::sort_by_key(&mut points, monitor, |&point| point)?;
-    let cells: Vec<&[([i64; 3], u32)]> = points.chunk_by(|a, b| a.0 == b.0).collect();
-    for cell in &cells {
-        for point in &cell[1..] {
-            sets.join(cell[0].1, point.1);
-        }
-    }
-    let near = |a: &[([i64; 3], u32)], b: &[([i64; 3], u32)]| {
-        let place = |i: u32| positions[i as usize];
-        a.iter().any(|&(_, i)| {
-            b.iter()
-                .any(|&(_, j)| place(i).distance_squared(place(j)) <= distance * distance)
-        })
-    };
-    for [x, y] in FORWARD {
-        // The column of cells to look at moves on with the cell, so one cursor
-        // per column passes over all cells once.
-        let mut cursor = 0;
-        in_order(cells.len(), monitor, |index| {
-            let cell = cells[index];
-            let at = |z: i64| {
-                let [cx, cy, cz] = cell[0].0;
-                [
-                    cx.saturating_add(x),
-                    cy.saturating_add(y),
-                    cz.saturating_add(z),
-                ]
-            };
-            let first = at(if (x, y) == (0, 0) { 1 } else { -2 });
-            while cells.get(cursor).is_some_and(|other| other[0].0 < first) {
-                cursor += 1;
-            }
-            for other in cells[cursor..]
-                .iter()
-                .take_while(|other| other[0].0 <= at(2))
-            {
-                if sets.root(cell[0].1) != sets.root(other[0].1) && near(cell, other) {
-                    sets.join(cell[0].1, other[0].1);
-                }
-            }
-        })?;
-    }
-    Ok(())
-}
-
-/// Half of the columns that a cell of side 0.577 can have neighbours in.
-const FORWARD: [[i64; 2]; 13] = [
-    [0, 0],
-    [0, 1],
-    [0, 2],
-    [1, -2],
-    [1, -1],
-    [1, 0],
-    [1, 1],
-    [1, 2],
-    [2, -2],
-    [2, -1],
-    [2, 0],
-    [2, 1],
-    [2, 2],
-];
 
 /// Disjoint sets whose root is always the lowest member.
 pub(crate) struct Sets(Vec<u32>);

@@ -86,6 +86,29 @@ impl Topology {
         Self::new(vertex_count, offsets, corners)
     }
 
+    /// The same faces of other vertices, whose offsets are shared.
+    ///
+    /// # Errors
+    /// As [`Topology::new`].
+    pub(crate) fn renamed(
+        &self,
+        vertex_count: usize,
+        corners: Vec<u32>,
+    ) -> Result<Self, GeometryError> {
+        assert_eq!(corners.len(), self.corner_count(), "the same faces");
+        if !are_faces(vertex_count, &self.offsets, &corners) {
+            check_faces(vertex_count, &self.offsets, &corners)?;
+        }
+        Ok(Self {
+            vertex_count,
+            offsets: self.offsets.clone(),
+            corners: corners.into(),
+            adjacency: OnceLock::new(),
+            boundary_loops: OnceLock::new(),
+            digest: OnceLock::new(),
+        })
+    }
+
     /// How many vertices the faces may name; some may be isolated.
     pub fn vertex_count(&self) -> usize {
         self.vertex_count
