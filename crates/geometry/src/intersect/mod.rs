@@ -1,5 +1,6 @@
 //! Faces of a mesh that cross each other, found by exact predicates.
 
+mod filter;
 mod hinge;
 mod polygon;
 mod predicate;
@@ -68,9 +69,6 @@ const LARGEST: f64 = 1e75;
 
 /// Share of the bounding box's diagonal that is the tolerance left out.
 const TOLERANCE: f64 = 1e-6;
-
-/// Faces per chunk of work.
-const FACES: usize = 512;
 
 /// Finds the pairs of faces whose insides cross.
 ///
@@ -182,17 +180,35 @@ pub(crate) fn components(
     monitor: &dyn Monitor,
 ) -> Result<(Vec<u32>, usize), GeometryError> {
     let panels = mesh.attribute(PANEL, Domain::Face).map(|a| a.values());
-    let names: Vec<i64> = match panels {
-        Some(AttributeValues::Integer(panels)) => panels.to_vec(),
-        _ => pieces_of_faces(mesh.topology(), monitor)?
-            .into_iter()
-            .map(i64::from)
-            .collect(),
-    };
-    number(&names, monitor)
+    match panels {
+        Some(AttributeValues::Integer(panels)) => number(panels, monitor),
+        _ => {
+            let pieces = pieces_of_faces(mesh.topology(), monitor)?;
+            number_few(&pieces, mesh.vertex_count(), monitor)
+        }
+    }
 }
 
-/// Equal names as equal numbers, from 0 in the order they first occur.
+/// Equal names below `count` as equal numbers, from 0 in the order they first occur.
+fn number_few(
+    names: &[u32],
+    count: usize,
+    monitor: &dyn Monitor,
+) -> Result<(Vec<u32>, usize), GeometryError> {
+    let mut number_of = vec![u32::MAX; count];
+    let (mut numbers, mut next) = (vec![0; names.len()], 0);
+    in_order(names.len(), monitor, |index| {
+        let number = &mut number_of[names[index] as usize];
+        if *number == u32::MAX {
+            *number = next;
+            next += 1;
+        }
+        numbers[index] = *number;
+    })?;
+    Ok((numbers, next as usize))
+}
+
+/// [`number_few`] for any names.
 fn number(names: &[i64], monitor: &dyn Monitor) -> Result<(Vec<u32>, usize), GeometryError> {
     let mut order: Vec<u32> = (0..names.len() as u32).collect();
     parallel::sort_by_key(&mut order, monitor, |&index| (names[index as usize], index))?;
@@ -222,7 +238,7 @@ struct Found {
     contacts: Vec<[u32; 2]>,
 }
 
-/// Looks at all wanted pairs whose boxes meet, in chunks of faces.
+/// Looks at all wanted pairs whose boxes meet.
 fn search(
     mesh: &Mesh,
     wanted: &(dyn Fn(u32, u32) -> bool + Sync),
@@ -230,43 +246,45 @@ fn search(
     monitor: &dyn Monitor,
 ) -> Result<Found, GeometryError> {
     let places = clusters(mesh.positions(), 0.0, monitor)?;
+    let places = parallel::map(mesh.corner_count(), monitor, |corner| {
+        places[mesh.topology().corners()[corner] as usize]
+    })?;
     let open = parallel::map(mesh.face_count(), monitor, |face| {
         Polygon::is_open(mesh, face)
     })?;
-    let tree = BoxTree::new(face_boxes(mesh, monitor)?, monitor)?;
-    let total = mesh.face_count();
+    let tree = BoxTree::new(&face_boxes(mesh, monitor)?, monitor)?;
+    let parts = tree.parts();
     let done = AtomicU64::new(0);
-    let chunks: Vec<Found> = (0..total.div_ceil(FACES))
-        .into_par_iter()
-        .map(|chunk| {
-            monitor.check()?;
-            let (mut found, mut near) = (Found::default(), Vec::new());
-            let faces = chunk * FACES..((chunk + 1) * FACES).min(total);
-            let count = faces.len() as u64;
-            for face in faces {
-                let face = face as u32;
-                near.clear();
-                tree.meeting_above(face, &mut near);
-                for &other in near.iter().filter(|&&other| wanted(face, other)) {
-                    let [a, b] = [face, other].map(|face| Polygon::new(mesh, &places, &open, face));
-                    let bounds = [tree.bounds(face), tree.bounds(other)];
-                    match relation(&a, &b, bounds, tolerance) {
-                        Relation::Apart => {}
-                        Relation::Contact => found.contacts.push([face, other]),
-                        Relation::Crossing => found.pairs.push([face, other]),
-                    }
+    let found: Vec<Found> = parts
+        .par_iter()
+        .map(|&part| {
+            let mut found = Found::default();
+            let mut look = |face: u32, other: u32| {
+                if !wanted(face, other) {
+                    return;
                 }
-            }
-            let before = done.fetch_add(count, Ordering::Relaxed);
-            monitor.progress(before + count, total as u64);
+                let a = Polygon::new(mesh, &places, &open, face);
+                let b = Polygon::new(mesh, &places, &open, other);
+                match relation(&a, &b, tolerance) {
+                    Relation::Apart => {}
+                    Relation::Contact => found.contacts.push([face, other]),
+                    Relation::Crossing => found.pairs.push([face, other]),
+                }
+            };
+            monitor.check()?;
+            tree.walk(part, monitor, &mut look)?;
+            let before = done.fetch_add(1, Ordering::Relaxed);
+            monitor.progress(before + 1, parts.len() as u64);
             Ok(found)
         })
         .collect::<Result<_, GeometryError>>()?;
     let mut all = Found::default();
-    for chunk in chunks {
-        all.pairs.extend(chunk.pairs);
-        all.contacts.extend(chunk.contacts);
+    for part in found {
+        all.pairs.extend(part.pairs);
+        all.contacts.extend(part.contacts);
     }
+    all.pairs.par_sort_unstable();
+    all.contacts.par_sort_unstable();
     Ok(all)
 }
 

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::filter;
 use super::hinge::{Hinge, hinges_cross, through_hinge};
 use super::predicate::{Corners, crosses, extent, is_folded, meets, open_axis};
 use crate::Mesh;
@@ -22,7 +23,7 @@ pub(super) enum Relation {
 /// A face and the numbers of the places of its vertices.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Polygon<'a> {
-    mesh: &'a Mesh,
+    positions: &'a [DVec3],
     places: &'a [u32],
     vertices: &'a [u32],
     /// Every triangle of its fans is known to have area.
@@ -30,13 +31,15 @@ pub(super) struct Polygon<'a> {
 }
 
 impl<'a> Polygon<'a> {
-    /// The face of that number; `places` has one number per vertex, equal
-    /// where positions are, `open` what [`Polygon::is_open`] says of each face.
+    /// The face of that number; `places` has one number per corner, equal where
+    /// positions are, `open` what [`Polygon::is_open`] says of each face.
+    #[inline]
     pub(super) fn new(mesh: &'a Mesh, places: &'a [u32], open: &[bool], face: u32) -> Self {
+        let range = mesh.topology().corner_range(face as usize);
         Self {
-            mesh,
-            places,
-            vertices: mesh.face(face as usize),
+            positions: mesh.positions(),
+            vertices: &mesh.topology().corners()[range.clone()],
+            places: &places[range],
             open: open[face as usize],
         }
     }
@@ -69,15 +72,14 @@ impl<'a> Polygon<'a> {
     }
 
     fn at(&self, corner: usize) -> DVec3 {
-        self.mesh.positions()[self.vertices[corner % self.vertices.len()] as usize]
+        self.positions[self.places[corner % self.places.len()] as usize]
     }
 
     /// Triangle `index` of the fan from corner `choice`; `None` without area.
     pub(super) fn triangle(&self, choice: usize, index: usize) -> Option<Corners> {
         let corners = [choice, choice + index + 1, choice + index + 2];
-        let vertices = corners.map(|corner| self.vertices[corner % self.vertices.len()]);
-        let place = vertices.map(|vertex| self.places[vertex as usize]);
-        let at = vertices.map(|vertex| self.mesh.positions()[vertex as usize]);
+        let place = corners.map(|corner| self.places[corner % self.places.len()]);
+        let at = place.map(|place| self.positions[place as usize]);
         if !self.open {
             open_axis(at)?;
         }
@@ -110,14 +112,29 @@ impl<'a> Polygon<'a> {
     }
 
     fn shared_places(&self, other: &Self) -> usize {
-        let place = |vertex: &u32| self.places[*vertex as usize];
-        let shared = |own: &&u32| {
-            other
-                .vertices
-                .iter()
-                .any(|vertex| place(vertex) == place(own))
-        };
-        self.vertices.iter().filter(shared).count()
+        let shared = |place: &&u32| other.places.contains(place);
+        self.places.iter().filter(shared).count()
+    }
+
+    /// Whether it is certain without exact predicates that they have nothing in
+    /// common but what they share.
+    #[inline]
+    fn are_apart(&self, other: &Self) -> bool {
+        match (self.places, other.places) {
+            (&[a, b, c], &[d, e, f]) => filter::apart((&[a, b, c], &[d, e, f]), self.positions),
+            (&[a, b, c, d], &[e, f, g, h]) => {
+                filter::apart((&[a, b, c, d], &[e, f, g, h]), self.positions)
+            }
+            _ => false,
+        }
+    }
+
+    fn bounds(&self) -> [DVec3; 2] {
+        let none = [DVec3::INFINITY, DVec3::NEG_INFINITY];
+        self.places.iter().fold(none, |[low, high], &place| {
+            let at = self.positions[place as usize];
+            [low.min(at), high.max(at)]
+        })
     }
 
     fn shared_vertices(&self, other: &Self) -> usize {
@@ -130,16 +147,15 @@ fn bounds_of(at: &[DVec3; 3]) -> [DVec3; 2] {
     [at[0].min(at[1]).min(at[2]), at[0].max(at[1]).max(at[2])]
 }
 
-/// How two faces lie to each other; `bounds` are their boxes.
+/// How two faces lie to each other.
 ///
 /// They meet if the triangles of their fans from corner 0 do, and cross if some
 /// do for every choice of fans from corners 0 and 1.
-pub(super) fn relation(
-    a: &Polygon<'_>,
-    b: &Polygon<'_>,
-    bounds: [[DVec3; 2]; 2],
-    tolerance: f64,
-) -> Relation {
+pub(super) fn relation(a: &Polygon<'_>, b: &Polygon<'_>, tolerance: f64) -> Relation {
+    if a.are_apart(b) {
+        return Relation::Apart;
+    }
+    let bounds = [a.bounds(), b.bounds()];
     let meet = a.any(0, bounds[1], |_, one| {
         b.any(0, bounds_of(&one.at), |_, two| meets(one, two))
     });

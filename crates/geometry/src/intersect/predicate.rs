@@ -1,11 +1,12 @@
 //! Two triangles: whether they cross or meet, decided exactly.
 //!
-//! Signs come from Shewchuk's adaptive predicates (1997), which settle most
-//! cases in plain floating point and fall back to exact expansions.
+//! Signs that [`super::filter`] leaves open come from Shewchuk's adaptive
+//! predicates (1997).
 
 use glam::DVec3;
 use robust::{Coord, Coord3D, orient2d, orient3d};
 
+use super::filter;
 use crate::math::unit_or_zero;
 
 /// A triangle with the numbers of its places; equal places have equal numbers.
@@ -17,7 +18,11 @@ pub(super) struct Corners {
 
 /// Positive where `d` is on the side of a, b, c from which they turn left,
 /// zero exactly in their plane.
+#[inline]
 pub(super) fn side(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> f64 {
+    if let Some(product) = filter::triple(a, b, c, d) {
+        return -product;
+    }
     let coord = |p: DVec3| Coord3D {
         x: p.x,
         y: p.y,
@@ -32,8 +37,13 @@ pub(super) fn side_of([a, b, c]: [DVec3; 3], d: DVec3) -> f64 {
 }
 
 /// Which side of the line from a to b the point c is on, seen along `axis`.
+#[inline]
 fn turn(axis: usize, a: DVec3, b: DVec3, c: DVec3) -> f64 {
     let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
+    let flat = |p: DVec3| [p[i], p[j]];
+    if let Some(area) = filter::area(flat(a), flat(b), flat(c)) {
+        return area;
+    }
     let coord = |p: DVec3| Coord { x: p[i], y: p[j] };
     orient2d(coord(a), coord(b), coord(c))
 }
@@ -166,7 +176,17 @@ pub(super) fn meets(a: &Corners, b: &Corners) -> bool {
             let far = |of: &Corners, at: usize| [of.at[(at + 1) % 3], of.at[(at + 2) % 3]];
             let [p, q] = far(a, in_a.items[0]);
             let [r, s] = far(b, in_b.items[0]);
-            segment_meets(p, q, b.at) || segment_meets(r, s, a.at)
+            // Beside the other's plane they have only the shared corner in it.
+            let beside =
+                |[one, two]: [f64; 2]| (one > 0.0 && two > 0.0) || (one < 0.0 && two < 0.0);
+            let of_b = [r, s].map(|end| side_of(a.at, end));
+            if beside(of_b) {
+                return false;
+            }
+            let of_a = [p, q].map(|end| side_of(b.at, end));
+            !beside(of_a)
+                && (sided_segment_meets([p, q], of_a, b.at)
+                    || sided_segment_meets([r, s], of_b, a.at))
         }
         (2, 2) => is_folded(a, b),
         _ => true,
@@ -218,14 +238,8 @@ fn is_one_side(sides: [f64; 3]) -> bool {
     sides.iter().all(|&side| side > 0.0) || sides.iter().all(|&side| side < 0.0)
 }
 
-/// Whether the segment from p to q has a point in common with a triangle,
-/// ends and borders included.
-fn segment_meets(p: DVec3, q: DVec3, triangle: [DVec3; 3]) -> bool {
-    let sides = [side_of(triangle, p), side_of(triangle, q)];
-    sided_segment_meets([p, q], sides, triangle)
-}
-
-/// As [`segment_meets`], where the sides of both ends are known.
+/// Whether the segment from p to q, whose ends are on these sides of a triangle's
+/// plane, has a point in common with it, ends and borders included.
 fn sided_segment_meets([p, q]: [DVec3; 2], [of_p, of_q]: [f64; 2], triangle: [DVec3; 3]) -> bool {
     if (of_p > 0.0 && of_q > 0.0) || (of_p < 0.0 && of_q < 0.0) {
         return false;
@@ -238,7 +252,7 @@ fn sided_segment_meets([p, q]: [DVec3; 2], [of_p, of_q]: [f64; 2], triangle: [DV
     sides.iter().all(|&side| side >= 0.0) || sides.iter().all(|&side| side <= 0.0)
 }
 
-/// As [`segment_meets`] within the triangle's plane: nothing separates them,
+/// As [`sided_segment_meets`] within the triangle's plane: nothing separates them,
 /// neither an edge of the triangle nor the segment.
 fn segment_meets_flat(p: DVec3, q: DVec3, triangle: [DVec3; 3]) -> bool {
     let Some(axis) = open_axis(triangle) else {

@@ -1,78 +1,247 @@
-//! Axis-aligned boxes sorted so that those meeting another one are found fast.
+//! Axis-aligned boxes sorted so that those meeting each other are found fast.
 
 use glam::DVec3;
 
-use super::build;
-use super::node::{LEAF, Node, Waiting};
-use super::triangle::Triangle;
-use crate::{GeometryError, Monitor};
+use super::leaf::{Lanes, WIDTH, greater};
+use super::order::{curve_order, index_of};
+use crate::{GeometryError, Monitor, parallel};
 
-/// Many boxes in the tree that [`super::Surface`] uses for its triangles.
+/// Many boxes along a space-filling curve, and over them boxes of four, of four
+/// times four and so on: a tree whose shape is that of its numbers.
 #[derive(Debug)]
 pub(crate) struct BoxTree {
-    boxes: Vec<[DVec3; 2]>,
-    nodes: Vec<Node>,
-    /// The boxes of each leaf; a leaf that is not full repeats its last one.
-    leaves: Vec<[u32; super::leaf::WIDTH]>,
-    root: u32,
+    /// The number of each box along the curve.
+    order: Vec<u32>,
+    /// Boxes by fours: first the given ones, last those below the root.
+    levels: Vec<Vec<Four>>,
 }
 
+/// Four boxes side by side; places without one have an empty box.
+#[derive(Debug, Clone)]
+struct Four {
+    low: [Lanes; 3],
+    high: [Lanes; 3],
+}
+
+/// Two fours of a level, or twice the same one: all pairs of boxes between them.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Pairs {
+    level: usize,
+    first: usize,
+    second: usize,
+}
+
+/// Fours that a level needs to be one that work is handed out by.
+const SHARED: usize = 128;
+
+/// Level from which on a walk asks whether to stop.
+const ASKING: usize = 2;
+
 impl BoxTree {
-    /// Sorts boxes, given by their lowest and highest corners, at least one.
+    /// Sorts boxes, given by their lowest and highest corners.
     /// Cost: O(boxes · log boxes).
     ///
     /// # Errors
     /// [`GeometryError::Cancelled`].
-    pub(crate) fn new(
-        boxes: Vec<[DVec3; 2]>,
+    pub(crate) fn new(boxes: &[[DVec3; 2]], monitor: &dyn Monitor) -> Result<Self, GeometryError> {
+        let centres = parallel::map(boxes.len(), monitor, |index| {
+            (boxes[index][0] + boxes[index][1]) * 0.5
+        })?;
+        let order = curve_order(&centres, monitor)?;
+        let order = parallel::map(order.len(), monitor, |at| index_of(order[at]) as u32)?;
+        let mut fours = parallel::map(boxes.len().div_ceil(WIDTH), monitor, |four| {
+            let end = (four * WIDTH + WIDTH).min(order.len());
+            let of_four = order[four * WIDTH..end].iter();
+            Four::new(of_four.map(|&index| boxes[index as usize]))
+        })?;
+        let mut levels = Vec::new();
+        while fours.len() > 1 {
+            let above = fours.chunks(WIDTH);
+            let above = above.map(|four| Four::new(four.iter().map(Four::bounds)));
+            let above = above.collect();
+            levels.push(std::mem::replace(&mut fours, above));
+        }
+        levels.push(fours);
+        Ok(Self { order, levels })
+    }
+
+    /// All pairs, in parts that can be walked through side by side; the same
+    /// parts always.
+    pub(crate) fn parts(&self) -> Vec<Pairs> {
+        let mut parts = vec![Pairs {
+            level: self.levels.len() - 1,
+            first: 0,
+            second: 0,
+        }];
+        while let level = parts[0].level
+            && level > 0
+            && self.levels[level].len() < SHARED
+        {
+            let mut below = Vec::new();
+            for part in parts {
+                self.each_below(part, |first, second| {
+                    below.push(Pairs {
+                        level: level - 1,
+                        first,
+                        second,
+                    });
+                });
+            }
+            parts = below;
+        }
+        parts
+    }
+
+    /// Calls `visit(a, b)` with a < b for all pairs of boxes of a part that meet,
+    /// borders included, in an order that depends on the boxes alone.
+    ///
+    /// # Errors
+    /// [`GeometryError::Cancelled`].
+    pub(crate) fn walk(
+        &self,
+        part: Pairs,
         monitor: &dyn Monitor,
-    ) -> Result<Self, GeometryError> {
-        // A box is sorted by its diagonal, a triangle without width.
-        let diagonal = |index: u32| {
-            let [low, high] = boxes[index as usize];
-            Triangle([low, high, high])
-        };
-        let tree = build::build(boxes.len(), diagonal, monitor)?;
-        let leaves = tree.leaves.iter().map(|leaf| leaf.triangles).collect();
-        Ok(Self {
-            nodes: tree.nodes,
-            leaves,
-            root: tree.root,
-            boxes,
-        })
-    }
-
-    /// Box `index` as its lowest and highest corner.
-    pub(crate) fn bounds(&self, index: u32) -> [DVec3; 2] {
-        self.boxes[index as usize]
-    }
-
-    /// Appends to `found` the boxes above `index` that meet box `index`,
-    /// ascending. Cost: O(log boxes + found) for boxes that are not all over
-    /// each other.
-    pub(crate) fn meeting_above(&self, index: u32, found: &mut Vec<u32>) {
-        let start = found.len();
-        let own = self.bounds(index);
-        let mut waiting = Waiting::new(self.root);
-        while let Some((_, reference)) = waiting.pop() {
-            if reference & LEAF != 0 {
-                let leaf = &self.leaves[(reference & !LEAF) as usize];
-                for (lane, &other) in leaf.iter().enumerate() {
-                    let repeated = lane > 0 && leaf[lane - 1] == other;
-                    if other > index && !repeated && overlap(own, self.bounds(other)) {
-                        found.push(other);
-                    }
+        visit: &mut impl FnMut(u32, u32),
+    ) -> Result<(), GeometryError> {
+        if part.level == 0 {
+            self.each_below(part, |first, second| {
+                if first != second {
+                    let (a, b) = (self.order[first], self.order[second]);
+                    visit(a.min(b), a.max(b));
                 }
-            } else {
-                let node = &self.nodes[reference as usize];
-                waiting.push(&node.apart(own[0], own[1]), &node.children, 0.0);
+            });
+            return Ok(());
+        }
+        if part.level >= ASKING {
+            monitor.check()?;
+        }
+        let mut outcome = Ok(());
+        self.each_below(part, |first, second| {
+            let level = part.level - 1;
+            if outcome.is_ok() {
+                let below = Pairs {
+                    level,
+                    first,
+                    second,
+                };
+                outcome = self.walk(below, monitor, visit);
+            }
+        });
+        outcome
+    }
+
+    /// Calls `visit` with the places, one level below, of all pairs of boxes that
+    /// meet; of one four also with each box and itself.
+    #[inline(always)]
+    fn each_below(&self, part: Pairs, mut visit: impl FnMut(usize, usize)) {
+        let fours = &self.levels[part.level];
+        let (first, second) = (&fours[part.first], &fours[part.second]);
+        for a in 0..WIDTH {
+            let gaps = second.gaps(first.get(a));
+            let from = if part.first == part.second { a } else { 0 };
+            for (b, &gap) in gaps.iter().enumerate().skip(from) {
+                if gap <= 0.0 {
+                    visit(WIDTH * part.first + a, WIDTH * part.second + b);
+                }
             }
         }
-        found[start..].sort_unstable();
+    }
+}
+
+impl Default for Four {
+    fn default() -> Self {
+        Self {
+            low: [[f64::INFINITY; WIDTH]; 3],
+            high: [[f64::NEG_INFINITY; WIDTH]; 3],
+        }
+    }
+}
+
+impl Four {
+    /// Up to four boxes.
+    fn new(boxes: impl Iterator<Item = [DVec3; 2]>) -> Self {
+        let mut four = Self::default();
+        for (lane, [low, high]) in boxes.enumerate() {
+            for axis in 0..3 {
+                four.low[axis][lane] = low[axis];
+                four.high[axis][lane] = high[axis];
+            }
+        }
+        four
+    }
+
+    /// One of the boxes: its lowest and highest corner.
+    #[inline(always)]
+    fn get(&self, lane: usize) -> [[f64; 3]; 2] {
+        let of = |rows: &[Lanes; 3]| [rows[0][lane], rows[1][lane], rows[2][lane]];
+        [of(&self.low), of(&self.high)]
+    }
+
+    /// The box round all four.
+    fn bounds(&self) -> [DVec3; 2] {
+        let low = self
+            .low
+            .map(|row| row.into_iter().fold(f64::INFINITY, f64::min));
+        let high = self
+            .high
+            .map(|row| row.into_iter().fold(f64::NEG_INFINITY, f64::max));
+        [DVec3::from_array(low), DVec3::from_array(high)]
+    }
+
+    /// How far each of the four is from a box, along the axis where it is farthest:
+    /// at most 0 if they share a point; an empty box is infinitely far.
+    #[inline(always)]
+    fn gaps(&self, [low, high]: [[f64; 3]; 2]) -> Lanes {
+        let mut gaps = [f64::NEG_INFINITY; WIDTH];
+        for axis in 0..3 {
+            for (lane, gap) in gaps.iter_mut().enumerate() {
+                let above = self.low[axis][lane] - high[axis];
+                let below = low[axis] - self.high[axis][lane];
+                *gap = greater(*gap, greater(above, below));
+            }
+        }
+        gaps
     }
 }
 
 /// Whether two boxes share a point, borders included.
 pub(crate) fn overlap(a: [DVec3; 2], b: [DVec3; 2]) -> bool {
     a[0].cmple(b[1]).all() && b[0].cmple(a[1]).all()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Unmonitored;
+    use crate::random::uniform;
+
+    #[test]
+    fn all_pairs_that_meet_are_visited_once() {
+        for (count, size) in [(1, 0.1), (4, 2.0), (5, 0.5), (257, 0.2), (3000, 0.05)] {
+            let draw = |i: i64, k: i64| uniform(3, 8 * i + k);
+            let boxes: Vec<[DVec3; 2]> = (0..count)
+                .map(|i| {
+                    let low = DVec3::new(draw(i, 0), draw(i, 1), draw(i, 2));
+                    // Some have no thickness, and some share a side with another.
+                    let low = if i % 3 == 0 {
+                        (low * 8.0).floor() / 8.0
+                    } else {
+                        low
+                    };
+                    let wide = DVec3::new(draw(i, 3), draw(i, 4), f64::from(i % 2 == 0));
+                    [low, low + wide * size]
+                })
+                .collect();
+            let tree = BoxTree::new(&boxes, &Unmonitored).unwrap();
+            let mut found = Vec::new();
+            for part in tree.parts() {
+                let mut visit = |a, b| found.push([a, b]);
+                tree.walk(part, &Unmonitored, &mut visit).unwrap();
+            }
+            found.sort_unstable();
+            let all = (0..count as u32).flat_map(|a| (a + 1..count as u32).map(move |b| [a, b]));
+            let meet = |&[a, b]: &[u32; 2]| overlap(boxes[a as usize], boxes[b as usize]);
+            assert_eq!(found, all.filter(meet).collect::<Vec<_>>(), "{count}");
+        }
+    }
 }

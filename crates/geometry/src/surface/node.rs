@@ -133,21 +133,6 @@ impl Node {
         axis_distances(&self.low, &self.high, p.to_array())
     }
 
-    /// 0 for each child whose box meets the box from `low` to `high`, infinite
-    /// for the others.
-    #[inline]
-    pub(super) fn apart(&self, low: DVec3, high: DVec3) -> Lanes {
-        let mut out = [f64::INFINITY; WIDTH];
-        for (k, out) in out.iter_mut().enumerate() {
-            let meets =
-                |axis: usize| self.low[axis][k] <= high[axis] && low[axis] <= self.high[axis][k];
-            if meets(0) && meets(1) && meets(2) {
-                *out = 0.0;
-            }
-        }
-        out
-    }
-
     /// Where the ray enters each child's box, or infinity where it misses it
     /// or only meets it beyond `end`.
     #[inline]

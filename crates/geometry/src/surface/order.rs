@@ -116,7 +116,10 @@ impl Surface {
 
 /// The points by their place on a Morton curve: its cell in the upper half of
 /// each number, the point's index in the lower, so that there are no ties.
-fn curve_order(points: &[DVec3], monitor: &dyn Monitor) -> Result<Vec<u64>, GeometryError> {
+pub(super) fn curve_order(
+    points: &[DVec3],
+    monitor: &dyn Monitor,
+) -> Result<Vec<u64>, GeometryError> {
     let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     for &point in points {
         low = low.min(point);
@@ -133,7 +136,7 @@ fn curve_order(points: &[DVec3], monitor: &dyn Monitor) -> Result<Vec<u64>, Geom
     Ok(order)
 }
 
-fn index_of(key: u64) -> usize {
+pub(super) fn index_of(key: u64) -> usize {
     (key & u64::from(u32::MAX)) as usize
 }
 
