@@ -4,18 +4,31 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::sync::OnceLock;
 
+use escargot::format::Message;
+
 use super::{bytes_of, workspace};
 
 /// The program, built once.
 pub(crate) fn program() -> &'static Path {
     static PATH: OnceLock<PathBuf> = OnceLock::new();
     PATH.get_or_init(|| {
+        // With the tests of the workspace, as they were just built: alone, the
+        // program would need its dependencies once more with fewer features.
         let build = escargot::CargoBuild::new()
-            .package("tessgraph")
-            .bin("tessgraph");
-        let build = build.manifest_path(workspace().join("Cargo.toml"));
-        let built = build.run().expect("the program builds");
-        built.path().to_owned()
+            .manifest_path(workspace().join("Cargo.toml"))
+            .bin("tessgraph")
+            .arg("--workspace")
+            .arg("--tests");
+        let messages = build.exec().expect("the program builds");
+        let programs = messages.filter_map(|message| {
+            let message = message.expect("the program builds");
+            let Ok(Message::CompilerArtifact(artifact)) = message.decode() else {
+                return None;
+            };
+            let is_program = artifact.target.name == "tessgraph" && !artifact.profile.test;
+            artifact.executable.filter(|_| is_program).map(Into::into)
+        });
+        programs.last().expect("the program builds")
     })
 }
 
