@@ -1,101 +1,216 @@
 //! Writes a file whole or not at all.
 
 use std::fs::{self, File, OpenOptions, TryLockError};
-use std::io::{self, Read, Write};
+use std::io::{self, Read, Seek, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use tessgraph_geometry::digest::Digest;
+use tessgraph_geometry::digest::{Digest, Hasher};
 
 use crate::interrupt::{self, Temporary};
 
-/// Bytes written or compared between two looks at whether to stop.
-const CHUNK: usize = 4 << 20;
+/// Bytes written, compared or hashed between two looks at whether to stop.
+pub(crate) const CHUNK: usize = 4 << 20;
 
 /// How often writing starts again when another process swept the temporary
 /// file away in the moment between its making and its locking.
 const ATTEMPTS: usize = 4;
 
-/// Puts `bytes` at `path`, unless they are there already; says whether it wrote.
+/// What stands at a place now.
+#[derive(Debug)]
+pub(crate) struct Put<T> {
+    /// Whether the file was replaced; if not, it held these bytes already.
+    pub(crate) changed: bool,
+    /// Its size.
+    pub(crate) bytes: u64,
+    /// The digest of its content, in chunks of [`CHUNK`].
+    pub(crate) digest: Digest,
+    /// What making it gave besides.
+    pub(crate) made: T,
+}
+
+/// [`put_if_changed`] with bytes that are there; says whether it wrote.
+pub(crate) fn write_if_changed(path: &Path, bytes: &[u8]) -> io::Result<bool> {
+    put_if_changed(path, |sink| sink.write_all(bytes)).map(|put| put.changed)
+}
+
+/// Puts what `make` writes at `path`, unless it is there already.
 ///
-/// The bytes go to a temporary file in the same folder, are flushed to the
-/// disk, take the place of the old file in one step, and the folder is flushed.
-/// Whatever happens in between, `path` is the old file or the new one. Missing
-/// folders are made. A file with the same content keeps its time. Temporary
-/// files that a killed process left for this path are removed.
+/// As long as the bytes are those of the old file, nothing is written. From the
+/// first that differs on they go to a temporary file in the same folder, which
+/// is flushed to the disk and takes the place of the old file in one step; then
+/// the folder is flushed. Whatever happens in between, `path` is the old file
+/// or the new one. Missing folders are made. A file with the same content keeps
+/// its time. Temporary files that a killed process left for this path are
+/// removed. No more than [`CHUNK`] bytes are held.
 ///
 /// # Errors
-/// Whatever the file system says; the old file is then untouched, unless only
-/// the last flush failed. `Interrupted` when the user asked to stop.
-pub(crate) fn write_if_changed(path: &Path, bytes: &[u8]) -> io::Result<bool> {
-    let folder = path.parent().unwrap_or(Path::new(""));
-    make_folders(folder)?;
-    let prefix = temporary_prefix(path);
-    sweep(folder, &prefix);
-    if has_content(path, bytes)? {
-        return Ok(false);
+/// What `make` says, and the file system; the old file is then untouched, unless
+/// only the last flush failed. Also when the user asked to stop.
+pub(crate) fn put_if_changed<T, E: From<io::Error>>(
+    path: &Path,
+    make: impl FnOnce(&mut dyn Write) -> Result<T, E>,
+) -> Result<Put<T>, E> {
+    let mut replacement = Replacement::new(path)?;
+    let made = make(&mut replacement)?;
+    let (changed, bytes, digest) = replacement.finish()?;
+    Ok(Put {
+        changed,
+        bytes,
+        digest,
+        made,
+    })
+}
+
+/// Takes the bytes of a file that will stand at a path.
+struct Replacement<'p> {
+    path: &'p Path,
+    folder: &'p Path,
+    prefix: String,
+    /// Bytes that were taken and not yet compared or written.
+    chunk: Vec<u8>,
+    taken: u64,
+    hasher: Hasher,
+    stage: Stage,
+}
+
+/// What becomes of the bytes.
+enum Stage {
+    /// So many were those of the old file, which stands behind them.
+    Same(File),
+    /// None was written yet, and there is nothing to compare with.
+    Nothing,
+    Written(File, Temporary),
+}
+
+impl<'p> Replacement<'p> {
+    fn new(path: &'p Path) -> io::Result<Self> {
+        let folder = path.parent().unwrap_or(Path::new(""));
+        make_folders(folder)?;
+        let prefix = temporary_prefix(path);
+        sweep(folder, &prefix);
+        // A file that may be written but not read is simply replaced.
+        let old = File::open(path).ok();
+        Ok(Self {
+            path,
+            folder,
+            prefix,
+            chunk: Vec::new(),
+            taken: 0,
+            hasher: Hasher::new(),
+            stage: old.map_or(Stage::Nothing, Stage::Same),
+        })
     }
-    for attempt in 1.. {
-        match replace(path, folder, &prefix, bytes) {
-            Err(error) if error.kind() == io::ErrorKind::NotFound && attempt < ATTEMPTS => {}
-            Err(error) => return Err(error),
-            Ok(()) => break,
+
+    /// Compares or writes what was taken.
+    fn settle(&mut self) -> io::Result<()> {
+        if interrupt::is_requested() {
+            return Err(io::Error::other("stopped"));
         }
-    }
-    flush_folder(folder)?;
-    Ok(true)
-}
-
-/// Whether the file at `path` holds exactly `bytes`.
-fn has_content(path: &Path, bytes: &[u8]) -> io::Result<bool> {
-    // A file that may be written but not read is simply replaced.
-    let Ok(mut file) = File::open(path) else {
-        return Ok(false);
-    };
-    if file.metadata()?.len() != bytes.len() as u64 {
-        return Ok(false);
-    }
-    let mut buffer = vec![0; CHUNK.min(bytes.len())];
-    for chunk in bytes.chunks(CHUNK) {
-        let part = &mut buffer[..chunk.len()];
-        if file.read_exact(part).is_err() || part != chunk {
-            return Ok(false);
+        if self.chunk.is_empty() {
+            return Ok(());
         }
-        check_interrupt()?;
+        self.hasher.bytes(&self.chunk);
+        let is_same = match &mut self.stage {
+            Stage::Same(old) => {
+                let mut there = Vec::with_capacity(self.chunk.len());
+                let read = old.take(self.chunk.len() as u64).read_to_end(&mut there);
+                read.is_ok() && there == self.chunk
+            }
+            _ => false,
+        };
+        if !is_same {
+            self.begin()?;
+            if let Stage::Written(file, _) = &mut self.stage {
+                file.write_all(&self.chunk)?;
+            }
+        }
+        self.taken += self.chunk.len() as u64;
+        self.chunk.clear();
+        Ok(())
     }
-    Ok(true)
+
+    /// Begins to write, with the bytes that were the same so far.
+    fn begin(&mut self) -> io::Result<()> {
+        let old = match std::mem::replace(&mut self.stage, Stage::Nothing) {
+            written @ Stage::Written(..) => {
+                self.stage = written;
+                return Ok(());
+            }
+            Stage::Nothing => None,
+            Stage::Same(old) => Some(old),
+        };
+        let (mut file, temporary) = self.temporary()?;
+        if let Ok(old) = fs::metadata(self.path) {
+            file.set_permissions(old.permissions())?;
+        }
+        if let Some(mut old) = old {
+            old.rewind()?;
+            if io::copy(&mut old.take(self.taken), &mut file)? != self.taken {
+                let message = "the file was changed while it was compared; run again";
+                return Err(io::Error::other(message));
+            }
+        }
+        self.stage = Stage::Written(file, temporary);
+        Ok(())
+    }
+
+    /// A new locked file beside the path.
+    fn temporary(&self) -> io::Result<(File, Temporary)> {
+        static SERIAL: AtomicU64 = AtomicU64::new(0);
+        for attempt in 1.. {
+            let serial = SERIAL.fetch_add(1, Ordering::Relaxed);
+            let name = format!("{}{}-{serial}.tmp", self.prefix, std::process::id());
+            let temporary = Temporary::register(self.folder.join(name));
+            let file = OpenOptions::new()
+                .write(true)
+                .create_new(true)
+                .open(temporary.path())?;
+            // No locks on this file system: then nobody sweeps there either. A
+            // sweeper that has it is about to remove it, or already has.
+            let is_swept = matches!(file.try_lock(), Err(TryLockError::WouldBlock))
+                || !temporary.path().exists();
+            if !is_swept {
+                return Ok((file, temporary));
+            }
+            if attempt == ATTEMPTS {
+                break;
+            }
+        }
+        Err(io::ErrorKind::NotFound.into())
+    }
+
+    /// Puts the file in its place, if it is another than stands there: whether it
+    /// is, its size, and the digest of its content.
+    fn finish(mut self) -> io::Result<(bool, u64, Digest)> {
+        self.settle()?;
+        let is_there = match &self.stage {
+            Stage::Same(old) => old.metadata()?.len() == self.taken,
+            _ => false,
+        };
+        if !is_there {
+            self.begin()?;
+            if let Stage::Written(file, temporary) = &self.stage {
+                file.sync_all()?;
+                fs::rename(temporary.path(), self.path)?;
+            }
+            flush_folder(self.folder)?;
+        }
+        Ok((!is_there, self.taken, self.hasher.finish()))
+    }
 }
 
-fn replace(path: &Path, folder: &Path, prefix: &str, bytes: &[u8]) -> io::Result<()> {
-    static SERIAL: AtomicU64 = AtomicU64::new(0);
-    let serial = SERIAL.fetch_add(1, Ordering::Relaxed);
-    let name = format!("{prefix}{}-{serial}.tmp", std::process::id());
-    let temporary = Temporary::register(folder.join(name));
-    let mut file = OpenOptions::new()
-        .write(true)
-        .create_new(true)
-        .open(temporary.path())?;
-    match file.try_lock() {
-        // A sweeper has it, and is about to remove it.
-        Err(TryLockError::WouldBlock) => return Err(io::ErrorKind::NotFound.into()),
-        // No locks on this file system: then nobody sweeps there either.
-        Err(TryLockError::Error(_)) | Ok(()) => {}
+impl Write for Replacement<'_> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let taken = bytes.len().min(CHUNK - self.chunk.len());
+        self.chunk.extend_from_slice(&bytes[..taken]);
+        if self.chunk.len() == CHUNK {
+            self.settle()?;
+        }
+        Ok(taken)
     }
-    if let Ok(old) = fs::metadata(path) {
-        file.set_permissions(old.permissions())?;
-    }
-    for chunk in bytes.chunks(CHUNK) {
-        check_interrupt()?;
-        file.write_all(chunk)?;
-    }
-    file.sync_all()?;
-    fs::rename(temporary.path(), path)
-}
 
-fn check_interrupt() -> io::Result<()> {
-    if interrupt::is_requested() {
-        Err(io::ErrorKind::Interrupted.into())
-    } else {
+    fn flush(&mut self) -> io::Result<()> {
         Ok(())
     }
 }
@@ -205,6 +320,53 @@ mod tests {
         let mut other = bytes;
         other[CHUNK + 1] = 8;
         assert!(write_if_changed(&path, &other).unwrap());
+    }
+
+    #[test]
+    fn what_is_the_same_at_first_is_kept_and_the_rest_replaced() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a");
+        let of = |count: usize| (0..count).map(|k| (k % 251) as u8).collect::<Vec<u8>>();
+        let mut edited = of(3 * CHUNK);
+        edited[2 * CHUNK + 7] ^= 1;
+        // Longer, shorter, changed late, ending with a chunk, empty, and again.
+        let contents = [
+            of(5),
+            of(2 * CHUNK),
+            of(2 * CHUNK + 1),
+            of(3 * CHUNK),
+            edited,
+        ];
+        for content in contents.iter().chain([&of(CHUNK), &Vec::new(), &of(9)]) {
+            let put = put_if_changed::<_, io::Error>(&path, |sink| {
+                content
+                    .chunks(100_003)
+                    .try_for_each(|part| sink.write_all(part))
+            });
+            let put = put.unwrap();
+            assert!(put.changed);
+            assert_eq!(put.bytes, content.len() as u64);
+            assert_eq!(super::tests::content(&path), *content);
+            let again = put_if_changed::<_, io::Error>(&path, |sink| sink.write_all(content));
+            let again = again.unwrap();
+            assert!(!again.changed);
+            assert_eq!(again.digest, put.digest);
+        }
+        assert_eq!(names(folder.path()), ["a"]);
+    }
+
+    #[test]
+    fn what_cannot_be_made_leaves_the_old_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a");
+        fs::write(&path, b"old").unwrap();
+        let failed = put_if_changed::<(), io::Error>(&path, |sink| {
+            sink.write_all(&vec![1; CHUNK + 1])?;
+            Err(io::Error::other("no more"))
+        });
+        assert_eq!(failed.unwrap_err().to_string(), "no more");
+        assert_eq!(content(&path), b"old");
+        assert_eq!(names(folder.path()), ["a"]);
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! What can be wrong with a file, and where.
 
-use std::fmt;
+use std::{fmt, io};
 
 use tessgraph_geometry::GeometryError;
 
@@ -13,6 +13,14 @@ pub enum IoError {
     /// The caller's monitor asked to stop.
     #[error("cancelled")]
     Cancelled,
+    /// What a file is written to does not take it: a full disk, a closed pipe.
+    #[error("{message}")]
+    NotTaken {
+        /// What the system calls it.
+        kind: io::ErrorKind,
+        /// The system's words.
+        message: String,
+    },
     /// The file's content, or the mesh to be written, cannot be used.
     #[error(transparent)]
     Fault(Box<Fault>),
@@ -110,10 +118,10 @@ impl IoError {
         self
     }
 
-    /// The fault, unless the operation was cancelled.
+    /// The fault, unless the operation was cancelled or its sink failed.
     pub fn fault(&self) -> Option<&Fault> {
         match self {
-            Self::Cancelled => None,
+            Self::Cancelled | Self::NotTaken { .. } => None,
             Self::Fault(fault) => Some(fault),
         }
     }

@@ -29,6 +29,7 @@ mod ply;
 mod read;
 mod sniff;
 mod stl;
+mod stream;
 mod text;
 mod uri;
 mod warnings;
@@ -43,11 +44,12 @@ pub use error::{Fault, FaultKind, IoError, Place};
 pub use format::Format;
 pub use gltf::{
     GlbColors, GlbNormals, GlbOptions, mesh_colors, place_in_range, viridis, write_glb,
+    write_glb_to,
 };
 pub use image::{Luminance, read_luminance, write_png};
-pub use obj::{ObjOptions, write_mtl, write_obj};
-pub use ply::{PlyOptions, write_ply};
+pub use obj::{ObjOptions, write_mtl, write_obj, write_obj_to};
+pub use ply::{PlyOptions, write_ply, write_ply_to};
 pub use read::{Loaded, ReadOptions, Resolve, ResolveError, no_files, read};
 pub use sniff::recognise;
-pub use stl::{StlOptions, write_stl};
+pub use stl::{StlOptions, write_stl, write_stl_to};
 pub use write::{TextOrBinary, Written};

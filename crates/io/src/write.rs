@@ -1,6 +1,10 @@
 //! What writers give, and text made fast.
 
+use std::io;
+
 use zmij::Buffer;
+
+use crate::error::IoError;
 
 /// Bytes of a written file, and what it could not hold.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -10,6 +14,17 @@ pub struct Written {
     /// What of the mesh the format has no place for, a sentence each without a
     /// full stop.
     pub warnings: Vec<String>,
+}
+
+impl Written {
+    /// What a writer gives that streams to a sink, kept in memory.
+    pub(crate) fn of(
+        write: impl FnOnce(&mut dyn io::Write) -> Result<Vec<String>, IoError>,
+    ) -> Result<Self, IoError> {
+        let mut bytes = Vec::new();
+        let warnings = write(&mut bytes)?;
+        Ok(Self { bytes, warnings })
+    }
 }
 
 /// The encoding of a file that has both.
@@ -23,16 +38,14 @@ pub enum TextOrBinary {
 }
 
 /// Text that is being written.
-#[derive(Default)]
-pub(crate) struct Text {
-    bytes: Vec<u8>,
+pub(crate) struct Text<'a> {
+    bytes: &'a mut Vec<u8>,
 }
 
-impl Text {
-    pub(crate) fn with_capacity(bytes: usize) -> Self {
-        Self {
-            bytes: Vec::with_capacity(bytes),
-        }
+impl<'a> Text<'a> {
+    /// Text that comes after `bytes`.
+    pub(crate) fn at_end_of(bytes: &'a mut Vec<u8>) -> Self {
+        Self { bytes }
     }
 
     #[inline]
@@ -65,10 +78,6 @@ impl Text {
         }
         self.bytes.extend_from_slice(value.to_string().as_bytes());
         self
-    }
-
-    pub(crate) fn into_bytes(self) -> Vec<u8> {
-        self.bytes
     }
 }
 
@@ -109,7 +118,8 @@ mod tests {
 
     #[test]
     fn numbers_are_short() {
-        let mut out = Text::default();
+        let mut bytes = Vec::new();
+        let mut out = Text::at_end_of(&mut bytes);
         out.float(1.0)
             .text(" ")
             .float(-0.5)
@@ -118,7 +128,7 @@ mod tests {
             .text(" ")
             .integer(0);
         out.text(" ").integer(u64::MAX).text(" ").float(-0.0);
-        let text = String::from_utf8(out.into_bytes()).unwrap();
+        let text = String::from_utf8(bytes).unwrap();
         assert_eq!(text, "1 -0.5 1e+22 0 18446744073709551615 -0");
     }
 
@@ -128,9 +138,9 @@ mod tests {
             .step_by(9_973)
             .chain([9, 10, 99, 100, 9_999, 10_000, 99_999_999])
         {
-            let mut out = Text::default();
-            out.integer(value);
-            assert_eq!(out.into_bytes(), value.to_string().into_bytes());
+            let mut bytes = Vec::new();
+            Text::at_end_of(&mut bytes).integer(value);
+            assert_eq!(bytes, value.to_string().into_bytes());
         }
     }
 

@@ -3,7 +3,7 @@
 
 use std::fs::File;
 use std::io::Read as _;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::PoisonError;
 
 use tessgraph_geometry::digest::{Digest, Hasher};
@@ -13,10 +13,8 @@ use tessgraph_graph::{NodeRun, Observer};
 
 use super::encode::made_from;
 use super::{Outputs, Target, WrittenOutput};
+use crate::atomic::{CHUNK, Put};
 use crate::interrupt;
-
-/// Bytes of a file that are looked at in one go.
-const CHUNK: usize = 4 << 20;
 
 impl Outputs<'_> {
     /// The record of the target's files if it is of `made_from` and they are
@@ -68,18 +66,18 @@ pub(super) fn found(target: &Target, record: &OutputRecord) -> Vec<WrittenOutput
     found
 }
 
-/// The record of files that were just written; none for paths that are no
-/// UTF-8.
+/// The record of files that were just put where they are; none for paths that
+/// are no UTF-8.
 pub(super) fn record(
     made_from: Digest,
-    files: &[(PathBuf, Vec<u8>)],
+    files: &[(&Path, Put<Vec<String>>)],
     lost: Vec<String>,
 ) -> Option<OutputRecord> {
-    let written = |(path, content): &(PathBuf, Vec<u8>)| {
+    let written = |(path, put): &(&Path, Put<Vec<String>>)| {
         Some(WrittenFile {
             path: path.to_str()?.to_owned(),
-            bytes: content.len() as u64,
-            digest: digest_of(content.chunks(CHUNK)),
+            bytes: put.bytes,
+            digest: put.digest,
         })
     };
     let files = files.iter().map(written).collect::<Option<_>>()?;
@@ -88,14 +86,6 @@ pub(super) fn record(
         files,
         lost,
     })
-}
-
-fn digest_of<'c>(chunks: impl Iterator<Item = &'c [u8]>) -> Digest {
-    let mut hasher = Hasher::new();
-    chunks.for_each(|chunk| {
-        hasher.bytes(chunk);
-    });
-    hasher.finish()
 }
 
 /// Whether the file holds what was written to it.

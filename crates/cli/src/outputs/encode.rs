@@ -1,15 +1,17 @@
 //! From values to the bytes of files.
 
+use std::borrow::Cow;
+use std::io;
 use std::path::PathBuf;
 
 use serde_json::{Map, Value as Json, json};
 use tessgraph_geometry::digest::{Digest, Hasher};
 use tessgraph_geometry::glam::DVec3;
-use tessgraph_geometry::{Attribute, AttributeValues, Domain, Mesh, Quantity};
+use tessgraph_geometry::{Attribute, AttributeValues, Domain, GeometryError, Mesh, Quantity};
 use tessgraph_graph::{Plan, Units, Value};
 use tessgraph_io::{
-    Format, GlbNormals, GlbOptions, IoError, ObjOptions, PlyOptions, StlOptions, Written,
-    write_glb, write_mtl, write_obj, write_ply, write_png, write_stl,
+    Format, GlbNormals, GlbOptions, IoError, ObjOptions, PlyOptions, StlOptions, write_glb_to,
+    write_mtl, write_obj_to, write_ply_to, write_png, write_stl_to,
 };
 use tessgraph_render::{DrawOptions, draw};
 
@@ -23,51 +25,99 @@ use crate::json::number;
 /// ours to replace.
 pub(super) const LIBRARY_MARK: &[u8] = b"# written by tessgraph\n";
 
-/// The files of one output.
-pub(super) struct Encoded {
-    /// Where each goes, and its bytes; an OBJ file's materials come before it.
-    pub(super) files: Vec<(PathBuf, Vec<u8>)>,
-    /// What the format could not hold.
-    pub(super) warnings: Vec<String>,
+/// A file of an output; an OBJ file's materials come before it.
+pub(super) struct EncodedFile<'a> {
+    /// Where it goes.
+    pub(super) path: PathBuf,
+    pub(super) content: Content<'a>,
 }
 
-/// Why a value has no bytes.
-pub(super) struct Failure {
-    pub(super) message: String,
-    pub(super) help: Option<String>,
+/// What a file holds.
+pub(super) enum Content<'a> {
+    Bytes(Vec<u8>),
+    /// A mesh, which is encoded while it is written.
+    Mesh(Box<MeshContent<'a>>),
 }
 
-/// The bytes of an output. OBJ, STL and PLY carry no unit and are written in
+/// A mesh and how it is written.
+pub(super) struct MeshContent<'a> {
+    mesh: Cow<'a, Mesh>,
+    options: MeshOptions,
+}
+
+enum MeshOptions {
+    Glb {
+        normals: GlbNormals,
+        name: String,
+        extras: Json,
+    },
+    Obj(ObjOptions),
+    Stl,
+    Ply,
+}
+
+/// Why a value has no bytes, or they were not taken.
+#[derive(Debug)]
+pub(super) enum Failure {
+    Encoding(IoError),
+    Other(String),
+    Sink(io::Error),
+}
+
+impl Failure {
+    /// What is wrong, and what to do about it.
+    pub(super) fn into_words(self) -> (String, Option<String>) {
+        match self {
+            Self::Encoding(error) => match error.fault() {
+                Some(fault) => (fault.cause.clone(), Some(fault.help.clone())),
+                None => (error.to_string(), None),
+            },
+            Self::Other(message) => (message, None),
+            Self::Sink(error) => (error.to_string(), None),
+        }
+    }
+}
+
+impl From<io::Error> for Failure {
+    fn from(error: io::Error) -> Self {
+        Self::Sink(error)
+    }
+}
+
+impl From<IoError> for Failure {
+    fn from(error: IoError) -> Self {
+        match error {
+            IoError::NotTaken { kind, message } => Self::Sink(io::Error::new(kind, message)),
+            error => Self::Encoding(error),
+        }
+    }
+}
+
+/// The files of an output. OBJ, STL and PLY carry no unit and are written in
 /// the graph's; glTF is in metres, and remembers what it was made from.
-pub(super) fn encode(
+pub(super) fn encode<'a>(
     plan: &Plan,
     target: &Target,
-    value: &Value,
+    value: &'a Value,
     provenance: Digest,
-) -> Result<Encoded, Failure> {
+) -> Result<Vec<EncodedFile<'a>>, Failure> {
     let quantity = plan.result_spec(target.result).quantity;
-    let text = match (target.format, value) {
+    let bytes = match (target.format, value) {
         (FileFormat::Mesh(format), Value::Mesh(mesh)) => {
             return encode_mesh(plan, target, format, mesh, provenance);
         }
-        (FileFormat::Png, Value::Mesh(mesh)) => return encode_picture(target, mesh),
-        (FileFormat::Json, value) => json_text(value, quantity, plan.units),
-        (FileFormat::Csv, value) => csv_text(value, plan.units),
+        (FileFormat::Png, Value::Mesh(mesh)) => Some(picture(mesh)?),
+        (FileFormat::Json, value) => json_text(value, quantity, plan.units).map(String::into_bytes),
+        (FileFormat::Csv, value) => csv_text(value, plan.units).map(String::into_bytes),
         _ => None,
     };
-    let Some(text) = text else {
-        // Kinds were checked before the run; this is a node that broke its word.
-        let message = format!("the node gave {} instead", value.kind().label());
-        return Err(Failure {
-            message,
-            help: None,
-        });
+    // Kinds were checked before the run; this is a node that broke its word.
+    let instead = || Failure::Other(format!("the node gave {} instead", value.kind().label()));
+    let file = EncodedFile {
+        path: target.path.clone(),
+        content: Content::Bytes(bytes.ok_or_else(instead)?),
     };
-    let files = vec![(target.path.clone(), text.into_bytes())];
-    Ok(Encoded {
-        files,
-        warnings: Vec::new(),
-    })
+    Ok(vec![file])
 }
 
 /// What a target's bytes depend on: the value, how it is written, and for a GLB
@@ -96,51 +146,33 @@ pub(super) fn made_from(plan: &Plan, target: &Target, value: Digest, provenance:
 }
 
 /// A picture as [`DrawOptions`] has it by default: the colours are the mesh's own.
-fn encode_picture(target: &Target, mesh: &Mesh) -> Result<Encoded, Failure> {
+fn picture(mesh: &Mesh) -> Result<Vec<u8>, Failure> {
     let picture = draw(mesh, &DrawOptions::default(), &UntilInterrupt);
-    let picture = picture.map_err(|error| Failure {
-        message: error.to_string(),
-        help: None,
-    })?;
-    let bytes = write_png(picture.size(), picture.pixels());
-    Ok(Encoded {
-        files: vec![(target.path.clone(), bytes)],
-        warnings: Vec::new(),
-    })
+    let picture = picture.map_err(|error| Failure::Other(error.to_string()))?;
+    Ok(write_png(picture.size(), picture.pixels()))
 }
 
-fn encode_mesh(
+fn encode_mesh<'a>(
     plan: &Plan,
     target: &Target,
     format: Format,
-    mesh: &Mesh,
+    mesh: &'a Mesh,
     provenance: Digest,
-) -> Result<Encoded, Failure> {
-    let scaled = if format.is_metric() {
-        None
+) -> Result<Vec<EncodedFile<'a>>, Failure> {
+    let mesh = if format.is_metric() {
+        Cow::Borrowed(mesh)
     } else {
         in_units(mesh, plan.units)?
     };
-    let mesh = scaled.as_ref().unwrap_or(mesh);
-    let monitor = &UntilInterrupt;
     let mut files = Vec::new();
-    let Written {
-        bytes,
-        mut warnings,
-    } = match format {
+    let options = match format {
         Format::Glb | Format::Gltf => {
-            let name = target
-                .path
-                .file_stem()
-                .unwrap_or_default()
-                .to_string_lossy();
-            let options = GlbOptions {
-                normals: shading(mesh),
-                name: Some(&name),
-                extras: Some(origin(plan, provenance)),
-                ..GlbOptions::default()
-            };
-            write_glb(mesh, &options, monitor)
+            let name = target.path.file_stem().unwrap_or_default();
+            MeshOptions::Glb {
+                normals: shading(&mesh),
+                name: name.to_string_lossy().into_owned(),
+                extras: origin(plan, provenance),
+            }
         }
         Format::Obj => {
             let library = target
@@ -151,19 +183,61 @@ fn encode_mesh(
                 material_library: name.map(|name| name.to_string_lossy().into_owned()),
                 ..ObjOptions::default()
             };
-            let materials = |path| (path, [LIBRARY_MARK, &write_mtl(mesh)].concat());
-            files.extend(library.map(materials));
-            write_obj(mesh, &options, monitor)
+            files.extend(library.map(|path| EncodedFile {
+                path,
+                content: Content::Bytes([LIBRARY_MARK, &write_mtl(&mesh)].concat()),
+            }));
+            MeshOptions::Obj(options)
         }
-        Format::Stl => write_stl(mesh, &StlOptions::default(), monitor),
-        Format::Ply => write_ply(mesh, &PlyOptions::default(), monitor),
+        Format::Stl => MeshOptions::Stl,
+        Format::Ply => MeshOptions::Ply,
+    };
+    files.push(EncodedFile {
+        path: target.path.clone(),
+        content: Content::Mesh(Box::new(MeshContent { mesh, options })),
+    });
+    Ok(files)
+}
+
+impl Content<'_> {
+    /// Writes the content; gives what the format could not hold.
+    pub(super) fn write(&self, sink: &mut dyn io::Write) -> Result<Vec<String>, Failure> {
+        match self {
+            Self::Bytes(bytes) => {
+                sink.write_all(bytes)?;
+                Ok(Vec::new())
+            }
+            Self::Mesh(content) => content.write(sink),
+        }
     }
-    .map_err(failure)?;
-    files.push((target.path.clone(), bytes));
-    if mesh.vertex_count() == 0 {
-        warnings.push("the mesh is empty: it has no vertices and no faces".to_owned());
+}
+
+impl MeshContent<'_> {
+    fn write(&self, sink: &mut dyn io::Write) -> Result<Vec<String>, Failure> {
+        let (mesh, monitor) = (self.mesh.as_ref(), &UntilInterrupt);
+        let mut warnings = match &self.options {
+            MeshOptions::Glb {
+                normals,
+                name,
+                extras,
+            } => {
+                let options = GlbOptions {
+                    normals: *normals,
+                    name: Some(name),
+                    extras: Some(extras.clone()),
+                    ..GlbOptions::default()
+                };
+                write_glb_to(sink, mesh, &options, monitor)
+            }
+            MeshOptions::Obj(options) => write_obj_to(sink, mesh, options, monitor),
+            MeshOptions::Stl => write_stl_to(sink, mesh, &StlOptions::default(), monitor),
+            MeshOptions::Ply => write_ply_to(sink, mesh, &PlyOptions::default(), monitor),
+        }?;
+        if mesh.vertex_count() == 0 {
+            warnings.push("the mesh is empty: it has no vertices and no faces".to_owned());
+        }
+        Ok(warnings)
     }
-    Ok(Encoded { files, warnings })
 }
 
 /// Smooth where the face attribute `smooth` is set on any face, else flat.
@@ -181,23 +255,10 @@ fn shading(mesh: &Mesh) -> GlbNormals {
     }
 }
 
-fn failure(error: IoError) -> Failure {
-    match error.fault() {
-        Some(fault) => Failure {
-            message: fault.cause.clone(),
-            help: Some(fault.help.clone()),
-        },
-        None => Failure {
-            message: error.to_string(),
-            help: None,
-        },
-    }
-}
-
-/// The mesh with its lengths in `units`; `None` if they are metres already.
-fn in_units(mesh: &Mesh, units: Units) -> Result<Option<Mesh>, Failure> {
+/// The mesh with its lengths in `units`.
+fn in_units(mesh: &Mesh, units: Units) -> Result<Cow<'_, Mesh>, Failure> {
     if units == Units::M {
-        return Ok(None);
+        return Ok(Cow::Borrowed(mesh));
     }
     let written = |metres: f64| units.from_si(metres, Quantity::Length);
     let positions = mesh.positions().iter();
@@ -205,10 +266,8 @@ fn in_units(mesh: &Mesh, units: Units) -> Result<Option<Mesh>, Failure> {
         .map(|p| DVec3::new(written(p.x), written(p.y), written(p.z)))
         .collect();
     let scaled = mesh.with_positions(positions);
-    scaled.map(Some).map_err(|error| Failure {
-        message: error.to_string(),
-        help: None,
-    })
+    let failed = |error: GeometryError| Failure::Other(error.to_string());
+    scaled.map(Cow::Owned).map_err(failed)
 }
 
 /// What a file was made from: version, digest of the graph and its inputs, and

@@ -22,12 +22,12 @@ pub(crate) use format::FileFormat;
 pub(crate) use tables::{csv_field, csv_number};
 pub(crate) use target::{Folders, InputFile, Target, input_files, targets};
 
-use crate::atomic::write_if_changed;
+use crate::atomic::{Put, put_if_changed};
 use crate::interrupt;
 use crate::places::is_same_file;
 use crate::text::printable;
 use crate::world::ReadFiles;
-use encode::{Encoded, Failure, LIBRARY_MARK, encode, made_from};
+use encode::{Content, EncodedFile, Failure, LIBRARY_MARK, encode, made_from};
 use target::onto_input;
 
 /// A file of an output that was written, or was there already.
@@ -109,39 +109,42 @@ impl<'a> Outputs<'a> {
         let Some(value) = evaluation.value(result) else {
             return Ok(Vec::new());
         };
-        let name = printable(&target.name);
-        let Encoded { files, warnings } =
-            encode(self.plan, target, value, provenance).map_err(|failure| {
-                let Failure { message, help } = failure;
-                let mut problem = self.failed(target, format!("cannot write `{name}`: {message}"));
-                problem.help = help;
-                problem
-            })?;
-        let mut written = Vec::new();
-        for (path, content) in &files {
-            let changed = self.write_file(target, path, content, read)?;
-            written.push(WrittenOutput {
-                bytes: content.len() as u64,
-                changed,
+        let refused = |failure| self.refused(target, failure);
+        let files = encode(self.plan, target, value, provenance).map_err(refused)?;
+        let mut put = Vec::new();
+        for EncodedFile { path, content } in &files {
+            put.push((
+                path.as_path(),
+                self.write_file(target, path, content, read)?,
+            ));
+        }
+        let mut written: Vec<_> = put
+            .iter()
+            .map(|(path, put)| WrittenOutput {
+                bytes: put.bytes,
+                changed: put.changed,
                 ..target.file(path)
-            });
-        }
+            })
+            .collect();
+        let lost: Vec<String> = put.iter().flat_map(|(_, put)| put.made.clone()).collect();
         if let Some(last) = written.last_mut() {
-            last.lost.clone_from(&warnings);
+            last.lost.clone_from(&lost);
         }
-        if let Some(record) = current::record(made_from, &files, warnings) {
+        if let Some(record) = current::record(made_from, &put, lost) {
             self.engine.keep_output_record(&target.path, &record);
         }
         Ok(written)
     }
 
+    /// Puts a file where it belongs; what that made known is what its format
+    /// could not hold.
     fn write_file(
         &self,
         target: &Target,
         path: &Path,
-        content: &[u8],
+        content: &Content<'_>,
         read: &ReadFiles,
-    ) -> Result<bool, Box<Diagnostic>> {
+    ) -> Result<Put<Vec<String>>, Box<Diagnostic>> {
         self.check_inputs(target, path, read)?;
         if *path != target.path && is_foreign_library(path) {
             let message = format!(
@@ -157,8 +160,21 @@ impl<'a> Outputs<'a> {
             );
             return Err(problem);
         }
-        write_if_changed(path, content)
-            .map_err(|error| self.failed(target, format!("cannot write {}: {error}", shown(path))))
+        put_if_changed(path, |sink| content.write(sink)).map_err(|failure| match failure {
+            Failure::Sink(error) => {
+                self.failed(target, format!("cannot write {}: {error}", shown(path)))
+            }
+            refusal => self.refused(target, refusal),
+        })
+    }
+
+    /// The value has no bytes in this format.
+    fn refused(&self, target: &Target, failure: Failure) -> Box<Diagnostic> {
+        let name = printable(&target.name);
+        let (message, help) = failure.into_words();
+        let mut problem = self.failed(target, format!("cannot write `{name}`: {message}"));
+        problem.help = help;
+        problem
     }
 
     /// No file of an output may be one that the run read.

@@ -84,6 +84,22 @@ impl Mesh {
         }
     }
 
+    /// Calls `take` with the face and the corners of each triangle of `faces`, in
+    /// the order of [`Mesh::triangles`], which it does without memory for all.
+    pub fn for_triangles(
+        &self,
+        faces: impl IntoIterator<Item = usize>,
+        mut take: impl FnMut(usize, [u32; 3]),
+    ) {
+        let (mut ears, mut run) = (Vec::new(), Vec::new());
+        for face in faces {
+            run.clear();
+            run.resize(self.face(face).len() - 2, [0; 3]);
+            self.cut(face, &mut ears, &mut run);
+            run.iter().for_each(|&triangle| take(face, triangle));
+        }
+    }
+
     /// The vertices of each triangle of [`Mesh::triangles`].
     pub fn triangle_vertices(&self, triangles: &Triangles) -> Vec<[u32; 3]> {
         let corners = self.topology().corners();

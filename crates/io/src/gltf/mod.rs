@@ -29,7 +29,7 @@ use buffers::Buffers;
 use document::{Document, JsonPlace};
 
 pub use colormap::{mesh_colors, place_in_range, viridis};
-pub use write::{GlbColors, GlbNormals, GlbOptions, write_glb};
+pub use write::{GlbColors, GlbNormals, GlbOptions, write_glb, write_glb_to};
 
 /// Reads a binary glTF file.
 ///

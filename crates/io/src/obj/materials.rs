@@ -215,7 +215,8 @@ fn convert(material: &tobj::Material) -> Material {
 /// # Ok::<(), tessgraph_geometry::GeometryError>(())
 /// ```
 pub fn write_mtl(mesh: &Mesh) -> Vec<u8> {
-    let mut out = Text::default();
+    let mut bytes = Vec::new();
+    let mut out = Text::at_end_of(&mut bytes);
     let names = unique_names(mesh.materials());
     let mut used = vec![false; names.len()];
     for &label in mesh
@@ -242,7 +243,7 @@ pub fn write_mtl(mesh: &Mesh) -> Vec<u8> {
         }
         out.text("\n");
     }
-    out.into_bytes()
+    bytes
 }
 
 /// The names materials are written under: fit for a line, and each only once.

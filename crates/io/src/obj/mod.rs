@@ -33,7 +33,7 @@ use parse::Parser;
 
 pub use materials::write_mtl;
 pub(crate) use write::lost_attributes;
-pub use write::{ObjOptions, write_obj};
+pub use write::{ObjOptions, write_obj, write_obj_to};
 
 /// Reads an OBJ file.
 ///

@@ -1,5 +1,7 @@
 //! Writing OBJ: all vertices in order, then the faces as polygons.
 
+use std::io;
+
 use glam::{DVec2, DVec3};
 use tessgraph_geometry::{
     Attribute, AttributeValues, Domain, Labels, Mesh, Monitor, NO_LABEL, PROVENANCE, glam,
@@ -8,6 +10,7 @@ use tessgraph_geometry::{
 use super::materials::unique_names;
 use super::tags::{CORNER, CREASE};
 use crate::intern::Interner;
+use crate::stream::Stream;
 use crate::write::{Text, Written, plain_name};
 use crate::{Format, IoError};
 
@@ -21,9 +24,6 @@ pub struct ObjOptions {
     pub boundary: Option<i64>,
 }
 
-/// Elements between two looks at the monitor.
-const POLL: usize = 1 << 14;
-
 /// Writes a mesh as OBJ.
 ///
 /// Vertices keep their order; faces stay polygons, with objects, groups and
@@ -31,7 +31,8 @@ const POLL: usize = 1 << 14;
 /// written: `uv`, `normal` (equal values once), `color`, `crease`,
 /// `corner_sharpness`; others are named in a warning. Numbers have the fewest
 /// digits that read back exactly, so a mesh read from OBJ is written and read
-/// back equal. Cost: O(corners).
+/// back equal. Cost: O(corners), and
+/// memory for the file.
 ///
 /// # Errors
 /// [`IoError::Cancelled`].
@@ -50,10 +51,24 @@ pub fn write_obj(
     options: &ObjOptions,
     monitor: &dyn Monitor,
 ) -> Result<Written, IoError> {
+    Written::of(|sink| write_obj_to(sink, mesh, options, monitor))
+}
+
+/// [`write_obj`] to a file or another sink, with memory for some blocks of it
+/// only; gives the warnings.
+///
+/// # Errors
+/// As [`write_obj`], and [`IoError::NotTaken`]; the sink then has a part of the
+/// file.
+pub fn write_obj_to(
+    sink: &mut dyn io::Write,
+    mesh: &Mesh,
+    options: &ObjOptions,
+    monitor: &dyn Monitor,
+) -> Result<Vec<String>, IoError> {
     let writer = Writer {
-        out: Text::with_capacity(64 + 40 * mesh.vertex_count() + 8 * mesh.corner_count()),
+        stream: Stream::new(sink, mesh.vertex_count() + mesh.face_count(), monitor),
         mesh,
-        monitor,
     };
     writer
         .write(options)
@@ -61,78 +76,51 @@ pub fn write_obj(
 }
 
 struct Writer<'a> {
-    out: Text,
+    stream: Stream<'a>,
     mesh: &'a Mesh,
-    monitor: &'a dyn Monitor,
 }
 
-impl Writer<'_> {
-    fn write(mut self, options: &ObjOptions) -> Result<Written, IoError> {
+impl<'a> Writer<'a> {
+    fn write(mut self, options: &ObjOptions) -> Result<Vec<String>, IoError> {
         if let Some(library) = &options.material_library {
-            self.out
-                .text("mtllib ")
-                .text(&plain_name(library, false))
-                .text("\n");
+            let line = format!("mtllib {}\n", plain_name(library, false));
+            self.stream.bytes(line.as_bytes())?;
         }
         self.vertices()?;
         let uvs = match self.values("uv", Domain::Corner) {
-            Some(AttributeValues::Vector2(uvs)) => self.uvs(&uvs.clone())?,
+            Some(AttributeValues::Vector2(uvs)) => self.uvs(uvs)?,
             _ => Vec::new(),
         };
         let normals = match self.values("normal", Domain::Corner) {
-            Some(AttributeValues::Vector3(normals)) => self.normals(&normals.clone())?,
+            Some(AttributeValues::Vector3(normals)) => self.normals(normals)?,
             _ => Vec::new(),
         };
         self.faces(&uvs, &normals)?;
-        self.tags(options.boundary);
-        let warnings = self.warnings();
-        Ok(Written {
-            bytes: self.out.into_bytes(),
-            warnings,
-        })
+        self.stream.bytes(&self.tags(options.boundary))?;
+        Ok(self.warnings())
     }
 
-    fn values(&self, name: &str, domain: Domain) -> Option<&AttributeValues> {
+    fn values(&self, name: &str, domain: Domain) -> Option<&'a AttributeValues> {
         self.mesh.attribute(name, domain).map(Attribute::values)
     }
 
-    /// Looks at the monitor now and then.
-    fn poll(&self, index: usize) -> Result<(), IoError> {
-        if index.is_multiple_of(POLL) {
-            self.monitor.check()?;
-            let total = (self.mesh.vertex_count() + self.mesh.face_count()) as u64;
-            self.monitor.progress(index as u64, total);
-        }
-        Ok(())
-    }
-
     fn vertices(&mut self) -> Result<(), IoError> {
-        let mesh = self.mesh;
         let colors = match self.values("color", Domain::Vertex) {
-            Some(AttributeValues::Vector3(colors)) => Some(colors.clone()),
+            Some(AttributeValues::Vector3(colors)) => Some(colors.as_slice()),
             _ => None,
         };
-        for (vertex, place) in mesh.positions().iter().enumerate() {
-            self.poll(vertex)?;
-            self.out.text("v");
-            self.triple(*place);
-            if let Some(colors) = &colors {
-                self.triple(colors[vertex]);
+        let positions = self.mesh.positions();
+        self.stream.elements(positions.len(), |vertices, out| {
+            let mut out = Text::at_end_of(out);
+            for vertex in vertices {
+                out.text("v");
+                triple(&mut out, positions[vertex]);
+                if let Some(colors) = colors {
+                    triple(&mut out, colors[vertex]);
+                }
+                out.text("\n");
             }
-            self.out.text("\n");
-        }
-        Ok(())
-    }
-
-    #[inline]
-    fn triple(&mut self, value: DVec3) {
-        self.out
-            .text(" ")
-            .float(value.x)
-            .text(" ")
-            .float(value.y)
-            .text(" ")
-            .float(value.z);
+        })
     }
 
     /// Writes distinct texture coordinates; the number of each corner's, from 1.
@@ -142,15 +130,14 @@ impl Writer<'_> {
             .iter()
             .map(|uv| distinct.number([uv.x.to_bits(), uv.y.to_bits()]) + 1)
             .collect();
-        for (index, &[u, v]) in distinct.keys().iter().enumerate() {
-            self.poll(index)?;
-            self.out
-                .text("vt ")
-                .float(f64::from_bits(u))
-                .text(" ")
-                .float(f64::from_bits(v));
-            self.out.text("\n");
-        }
+        let keys = distinct.keys();
+        self.stream.elements(keys.len(), |chosen, out| {
+            let mut out = Text::at_end_of(out);
+            for &[u, v] in &keys[chosen] {
+                out.text("vt ").float(f64::from_bits(u));
+                out.text(" ").float(f64::from_bits(v)).text("\n");
+            }
+        })?;
         Ok(numbers)
     }
 
@@ -161,12 +148,15 @@ impl Writer<'_> {
             .iter()
             .map(|normal| distinct.number(normal.to_array().map(f64::to_bits)) + 1)
             .collect();
-        for (index, &key) in distinct.keys().iter().enumerate() {
-            self.poll(index)?;
-            self.out.text("vn");
-            self.triple(DVec3::from(key.map(f64::from_bits)));
-            self.out.text("\n");
-        }
+        let keys = distinct.keys();
+        self.stream.elements(keys.len(), |chosen, out| {
+            let mut out = Text::at_end_of(out);
+            for key in &keys[chosen] {
+                out.text("vn");
+                triple(&mut out, DVec3::from(key.map(f64::from_bits)));
+                out.text("\n");
+            }
+        })?;
         Ok(numbers)
     }
 
@@ -177,64 +167,41 @@ impl Writer<'_> {
             let plain: Vec<_> = names.iter().map(|name| plain_name(name, true)).collect();
             plain.join(" ")
         });
-        let materials = unique_names(mesh.materials());
-        let mut current = [NO_LABEL; 3];
-        for face in 0..mesh.face_count() {
-            self.poll(face)?;
-            let labels = [
-                ("o", mesh.objects().of_face(), &objects),
-                ("g", mesh.groups().of_face(), &groups),
-                ("usemtl", mesh.materials().of_face(), &materials),
-            ];
-            for ((keyword, of_face, names), current) in labels.into_iter().zip(&mut current) {
-                let label = of_face.get(face).copied().unwrap_or(NO_LABEL);
-                if label != *current {
-                    *current = label;
-                    self.out.text(keyword);
-                    if let Some(name) = names.get(label as usize) {
-                        self.out.text(" ").text(name);
+        let labels = [
+            ("o", mesh.objects().of_face(), objects),
+            ("g", mesh.groups().of_face(), groups),
+            (
+                "usemtl",
+                mesh.materials().of_face(),
+                unique_names(mesh.materials()),
+            ),
+        ];
+        self.stream.elements(mesh.face_count(), |faces, out| {
+            let mut out = Text::at_end_of(out);
+            for face in faces {
+                for (keyword, of_face, names) in &labels {
+                    let label = |face: usize| of_face.get(face).copied().unwrap_or(NO_LABEL);
+                    let before = face.checked_sub(1).map_or(NO_LABEL, label);
+                    if label(face) == before {
+                        continue;
                     }
-                    self.out.text("\n");
+                    out.text(keyword);
+                    if let Some(name) = names.get(label(face) as usize) {
+                        out.text(" ").text(name);
+                    }
+                    out.text("\n");
                 }
+                self::face(&mut out, mesh, face, uvs, normals);
             }
-            self.face(face, uvs, normals);
-        }
-        Ok(())
-    }
-
-    #[inline]
-    fn face(&mut self, face: usize, uvs: &[u32], normals: &[u32]) {
-        let topology = self.mesh.topology();
-        self.out.text("f");
-        for corner in topology.corner_range(face) {
-            self.out
-                .text(" ")
-                .integer(u64::from(topology.corners()[corner]) + 1);
-            match (uvs.get(corner), normals.get(corner)) {
-                (None, None) => {}
-                (Some(&uv), None) => {
-                    self.out.text("/").integer(uv.into());
-                }
-                (None, Some(&normal)) => {
-                    self.out.text("//").integer(normal.into());
-                }
-                (Some(&uv), Some(&normal)) => {
-                    self.out
-                        .text("/")
-                        .integer(uv.into())
-                        .text("/")
-                        .integer(normal.into());
-                }
-            }
-        }
-        self.out.text("\n");
+        })
     }
 
     /// OpenSubdiv's tags for sharp edges, sharp vertices and the border rule.
-    fn tags(&mut self, boundary: Option<i64>) {
+    fn tags(&self, boundary: Option<i64>) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        let mut out = Text::at_end_of(&mut bytes);
         let mesh = self.mesh;
         if let Some(AttributeValues::Number(sharpness)) = self.values(CREASE, Domain::Corner) {
-            let sharpness = sharpness.clone();
             let mut written = Interner::new();
             for face in 0..mesh.face_count() {
                 let vertices = mesh.face(face);
@@ -247,27 +214,22 @@ impl Writer<'_> {
                     if sharpness[corner] > 0.0
                         && written.number([a.min(b), a.max(b)]) as usize == before
                     {
-                        self.out
-                            .text("t crease 2/1/0 ")
-                            .integer(a)
-                            .text(" ")
-                            .integer(b);
-                        self.out.text(" ").float(sharpness[corner]).text("\n");
+                        out.text("t crease 2/1/0 ").integer(a).text(" ").integer(b);
+                        out.text(" ").float(sharpness[corner]).text("\n");
                     }
                 }
             }
         }
         if let Some(AttributeValues::Number(sharpness)) = self.values(CORNER, Domain::Vertex) {
-            let sharp = sharpness.clone();
-            for (vertex, &value) in sharp.iter().enumerate().filter(|item| *item.1 > 0.0) {
-                self.out.text("t corner 1/1/0 ").integer(vertex as u64);
-                self.out.text(" ").float(value).text("\n");
+            for (vertex, &value) in sharpness.iter().enumerate().filter(|item| *item.1 > 0.0) {
+                out.text("t corner 1/1/0 ").integer(vertex as u64);
+                out.text(" ").float(value).text("\n");
             }
         }
         if let Some(rule) = boundary {
-            self.out
-                .text(&format!("t interpolateboundary 1/0/0 {rule}\n"));
+            out.text(&format!("t interpolateboundary 1/0/0 {rule}\n"));
         }
+        bytes
     }
 
     fn warnings(&self) -> Vec<String> {
@@ -288,6 +250,37 @@ impl Writer<'_> {
             .filter(|attribute| !written(attribute));
         lost_attributes(lost, Format::Obj)
     }
+}
+
+#[inline]
+fn triple(out: &mut Text<'_>, value: DVec3) {
+    out.text(" ").float(value.x);
+    out.text(" ").float(value.y);
+    out.text(" ").float(value.z);
+}
+
+#[inline]
+fn face(out: &mut Text<'_>, mesh: &Mesh, face: usize, uvs: &[u32], normals: &[u32]) {
+    let topology = mesh.topology();
+    out.text("f");
+    for corner in topology.corner_range(face) {
+        let vertex = topology.corners()[corner];
+        out.text(" ").integer(u64::from(vertex) + 1);
+        match (uvs.get(corner), normals.get(corner)) {
+            (None, None) => {}
+            (Some(&uv), None) => {
+                out.text("/").integer(uv.into());
+            }
+            (None, Some(&normal)) => {
+                out.text("//").integer(normal.into());
+            }
+            (Some(&uv), Some(&normal)) => {
+                out.text("/").integer(uv.into());
+                out.text("/").integer(normal.into());
+            }
+        }
+    }
+    out.text("\n");
 }
 
 /// One warning that names the attributes a format has no place for, except for

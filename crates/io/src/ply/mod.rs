@@ -29,7 +29,7 @@ use crate::{Format, Loaded, sniff};
 use body::{Column, Rows, Source};
 use header::Header;
 
-pub use write::{PlyOptions, write_ply};
+pub use write::{PlyOptions, write_ply, write_ply_to};
 
 const EXPORT: &str = "export it again";
 

@@ -1,9 +1,12 @@
 //! Writing PLY.
 
+use std::io;
+
 use tessgraph_geometry::{Attribute, AttributeValues, Domain, Mesh, Monitor};
 
 use crate::Format;
 use crate::error::IoError;
+use crate::stream::Stream;
 use crate::write::{Text, TextOrBinary, Written, plain_name};
 
 /// How a PLY file is written.
@@ -13,16 +16,14 @@ pub struct PlyOptions {
     pub encoding: TextOrBinary,
 }
 
-/// Rows between two looks at the monitor.
-const POLL: usize = 1 << 14;
-
 /// Writes a mesh as PLY: polygons, positions as doubles, all attributes.
 ///
 /// Attributes are written under the names that reading knows them by (see the
 /// table in this module's source): `color` as bytes, which is what other
 /// programs expect and keeps 1/255; everything else exactly, integers beyond
 /// 32 bits as doubles. Materials, groups and objects have no place in PLY and
-/// are named in a warning. Cost: O(size).
+/// are named in a warning. Cost: O(size), and
+/// memory for the file.
 ///
 /// # Errors
 /// [`IoError::Cancelled`].
@@ -40,6 +41,21 @@ pub fn write_ply(
     options: &PlyOptions,
     monitor: &dyn Monitor,
 ) -> Result<Written, IoError> {
+    Written::of(|sink| write_ply_to(sink, mesh, options, monitor))
+}
+
+/// [`write_ply`] to a file or another sink, with memory for some blocks of it
+/// only; gives the warnings.
+///
+/// # Errors
+/// As [`write_ply`], and [`IoError::NotTaken`]; the sink then has a part of the
+/// file.
+pub fn write_ply_to(
+    sink: &mut dyn io::Write,
+    mesh: &Mesh,
+    options: &PlyOptions,
+    monitor: &dyn Monitor,
+) -> Result<Vec<String>, IoError> {
     let columns = |domain: Domain| {
         let attributes = mesh.attributes().iter();
         attributes
@@ -57,38 +73,16 @@ pub fn write_ply(
         vertex: columns(Domain::Vertex),
         face: columns(Domain::Face),
         corner: columns(Domain::Corner),
-        monitor,
     };
-    let header = writer.header(options.encoding);
-    let bytes = match options.encoding {
-        TextOrBinary::Text => writer.write(AsciiSink {
-            out: start_text(&header, mesh),
-            first: true,
-        }),
-        TextOrBinary::Binary => writer.write(BinarySink {
-            out: start_binary(&header, mesh),
-        }),
-    };
-    let bytes = bytes.map_err(|error| error.in_file("", Format::Ply))?;
-    Ok(Written {
-        bytes,
-        warnings: lost(mesh),
-    })
-}
-
-fn start_text(header: &str, mesh: &Mesh) -> Text {
-    let mut out =
-        Text::with_capacity(header.len() + 40 * mesh.vertex_count() + 8 * mesh.corner_count());
-    out.text(header);
-    out
-}
-
-fn start_binary(header: &str, mesh: &Mesh) -> Vec<u8> {
-    let size =
-        header.len() + 24 * mesh.vertex_count() + 4 * mesh.corner_count() + 4 * mesh.face_count();
-    let mut out = Vec::with_capacity(size);
-    out.extend_from_slice(header.as_bytes());
-    out
+    let mut stream = Stream::new(sink, mesh.vertex_count() + mesh.face_count(), monitor);
+    let written = stream
+        .bytes(writer.header(options.encoding).as_bytes())
+        .and_then(|()| match options.encoding {
+            TextOrBinary::Text => writer.write::<AsciiSink>(&mut stream),
+            TextOrBinary::Binary => writer.write::<BinarySink>(&mut stream),
+        });
+    written.map_err(|error| error.in_file("", Format::Ply))?;
+    Ok(lost(mesh))
 }
 
 fn lost(mesh: &Mesh) -> Vec<String> {
@@ -209,7 +203,6 @@ struct Writer<'a> {
     vertex: Vec<Output<'a>>,
     face: Vec<Output<'a>>,
     corner: Vec<Output<'a>>,
-    monitor: &'a dyn Monitor,
 }
 
 impl Writer<'_> {
@@ -249,43 +242,39 @@ impl Writer<'_> {
         header
     }
 
-    fn write<S: Sink>(&self, mut sink: S) -> Result<Vec<u8>, IoError> {
-        let total = (self.mesh.vertex_count() + self.mesh.face_count()) as u64;
-        let poll = |done: usize, before: usize| {
-            if done.is_multiple_of(POLL) {
-                self.monitor.check()?;
-                self.monitor.progress((done + before) as u64, total);
+    /// Writes all rows.
+    fn write<S: Sink>(&self, stream: &mut Stream<'_>) -> Result<(), IoError> {
+        stream.elements(self.mesh.vertex_count(), |vertices, out| {
+            let mut sink = S::at_end_of(std::mem::take(out));
+            for vertex in vertices {
+                let place = self.mesh.positions()[vertex].to_array();
+                place.into_iter().for_each(|value| sink.double(value));
+                let columns = self.vertex.iter();
+                columns.for_each(|column| column.put(vertex, &mut sink));
+                sink.end_row();
             }
-            Ok::<(), IoError>(())
-        };
-        for (vertex, place) in self.mesh.positions().iter().enumerate() {
-            poll(vertex, 0)?;
-            place
-                .to_array()
-                .into_iter()
-                .for_each(|value| sink.double(value));
-            self.vertex
-                .iter()
-                .for_each(|output| output.put(vertex, &mut sink));
-            sink.end_row();
+            *out = sink.into_bytes();
+        })?;
+        stream.elements(self.mesh.face_count(), |faces, out| {
+            let mut sink = S::at_end_of(std::mem::take(out));
+            faces.for_each(|face| self.face_row(face, &mut sink));
+            *out = sink.into_bytes();
+        })
+    }
+
+    #[inline]
+    fn face_row<S: Sink>(&self, face: usize, sink: &mut S) {
+        let vertices = self.mesh.face(face);
+        self.count(vertices.len(), sink);
+        vertices.iter().for_each(|&vertex| sink.index(vertex));
+        let columns = self.face.iter();
+        columns.for_each(|column| column.put(face, sink));
+        for column in &self.corner {
+            self.count(vertices.len() * column.width(), sink);
+            let corners = self.mesh.topology().corner_range(face);
+            corners.for_each(|corner| column.put(corner, sink));
         }
-        for face in 0..self.mesh.face_count() {
-            poll(face, self.mesh.vertex_count())?;
-            let vertices = self.mesh.face(face);
-            self.count(vertices.len(), &mut sink);
-            vertices.iter().for_each(|&vertex| sink.index(vertex));
-            self.face
-                .iter()
-                .for_each(|output| output.put(face, &mut sink));
-            for output in &self.corner {
-                self.count(vertices.len() * output.width(), &mut sink);
-                for corner in self.mesh.topology().corner_range(face) {
-                    output.put(corner, &mut sink);
-                }
-            }
-            sink.end_row();
-        }
-        Ok(sink.finish())
+        sink.end_row();
     }
 
     #[inline]
@@ -300,12 +289,13 @@ impl Writer<'_> {
 
 /// Where values go.
 trait Sink {
+    fn at_end_of(bytes: Vec<u8>) -> Self;
     fn byte(&mut self, value: u8);
     fn int(&mut self, value: i32);
     fn index(&mut self, value: u32);
     fn double(&mut self, value: f64);
     fn end_row(&mut self);
-    fn finish(self) -> Vec<u8>;
+    fn into_bytes(self) -> Vec<u8>;
 }
 
 struct BinarySink {
@@ -313,6 +303,10 @@ struct BinarySink {
 }
 
 impl Sink for BinarySink {
+    fn at_end_of(out: Vec<u8>) -> Self {
+        Self { out }
+    }
+
     #[inline]
     fn byte(&mut self, value: u8) {
         self.out.push(value);
@@ -335,27 +329,31 @@ impl Sink for BinarySink {
 
     fn end_row(&mut self) {}
 
-    fn finish(self) -> Vec<u8> {
+    fn into_bytes(self) -> Vec<u8> {
         self.out
     }
 }
 
 struct AsciiSink {
-    out: Text,
+    out: Vec<u8>,
     /// Whether the next value is the first of its row.
     first: bool,
 }
 
 impl AsciiSink {
-    fn part(&mut self) -> &mut Text {
+    fn part(&mut self) -> Text<'_> {
         if !std::mem::replace(&mut self.first, false) {
-            self.out.text(" ");
+            self.out.push(b' ');
         }
-        &mut self.out
+        Text::at_end_of(&mut self.out)
     }
 }
 
 impl Sink for AsciiSink {
+    fn at_end_of(out: Vec<u8>) -> Self {
+        Self { out, first: true }
+    }
+
     fn byte(&mut self, value: u8) {
         self.part().integer(value.into());
     }
@@ -373,11 +371,11 @@ impl Sink for AsciiSink {
     }
 
     fn end_row(&mut self) {
-        self.out.text("\n");
+        self.out.push(b'\n');
         self.first = true;
     }
 
-    fn finish(self) -> Vec<u8> {
-        self.out.into_bytes()
+    fn into_bytes(self) -> Vec<u8> {
+        self.out
     }
 }

@@ -19,7 +19,7 @@ use crate::error::{FaultKind, IoError, Place};
 use crate::intern::Interner;
 use crate::{Format, Loaded, ReadOptions, sniff, text};
 
-pub use write::{StlOptions, write_stl};
+pub use write::{StlOptions, write_stl, write_stl_to};
 
 /// Bytes before the triangles of a binary file: 80 of header, 4 of count.
 const HEADER: usize = 84;

@@ -1,12 +1,15 @@
 //! Writing STL.
 
+use std::io;
+
 use glam::DVec3;
 use tessgraph_geometry::math::unit_or_zero;
-use tessgraph_geometry::{Mesh, Monitor, glam, parallel};
+use tessgraph_geometry::{Mesh, Monitor, glam};
 
 use super::{HEADER, TRIANGLE};
 use crate::Format;
 use crate::error::{FaultKind, IoError, Place};
+use crate::stream::Stream;
 use crate::write::{Text, TextOrBinary, Written};
 
 /// How an STL file is written.
@@ -16,15 +19,12 @@ pub struct StlOptions {
     pub encoding: TextOrBinary,
 }
 
-/// Triangles between two looks at the monitor.
-const POLL: usize = 1 << 14;
-
 /// Writes the triangles of a mesh (those of `Mesh::triangles`) as STL.
 ///
 /// STL holds nothing but triangles: no shared vertices, attributes, materials
 /// or names. Binary files round to 32 bits; a warning says by how much where
 /// that is more than a millionth of the mesh's size, as for meshes far from
-/// the origin. Cost: O(triangles).
+/// the origin. Cost: O(corners), and memory for the file.
 ///
 /// # Errors
 /// [`IoError::Fault`] names the first vertex beyond the reach of 32-bit
@@ -43,11 +43,25 @@ pub fn write_stl(
     options: &StlOptions,
     monitor: &dyn Monitor,
 ) -> Result<Written, IoError> {
-    monitor.check()?;
-    let triangles = mesh.triangles().corners;
+    Written::of(|sink| write_stl_to(sink, mesh, options, monitor))
+}
+
+/// [`write_stl`] to a file or another sink, with memory for some blocks of it
+/// only; gives the warnings.
+///
+/// # Errors
+/// As [`write_stl`], and [`IoError::NotTaken`]; the sink then has a part of the
+/// file.
+pub fn write_stl_to(
+    sink: &mut dyn io::Write,
+    mesh: &Mesh,
+    options: &StlOptions,
+    monitor: &dyn Monitor,
+) -> Result<Vec<String>, IoError> {
+    let stream = Stream::new(sink, mesh.face_count(), monitor);
     let written = match options.encoding {
-        TextOrBinary::Binary => binary(mesh, &triangles, monitor),
-        TextOrBinary::Text => ascii(mesh, &triangles, monitor),
+        TextOrBinary::Binary => binary(stream, mesh, monitor),
+        TextOrBinary::Text => ascii(stream, mesh).map(|()| Vec::new()),
     };
     written.map_err(|error| error.in_file("", Format::Stl))
 }
@@ -66,38 +80,46 @@ fn normal([a, b, c]: [DVec3; 3]) -> DVec3 {
 
 /// The places of a triangle's corners.
 #[inline]
-fn places(mesh: &Mesh, triangle: &[u32; 3]) -> [DVec3; 3] {
+fn places(mesh: &Mesh, triangle: [u32; 3]) -> [DVec3; 3] {
     let corners = mesh.topology().corners();
     triangle.map(|corner| mesh.positions()[corners[corner as usize] as usize])
 }
 
-fn binary(mesh: &Mesh, triangles: &[[u32; 3]], monitor: &dyn Monitor) -> Result<Written, IoError> {
-    let Ok(count) = u32::try_from(triangles.len()) else {
-        let cause = format!(
-            "{} triangles are more than an STL file can count",
-            triangles.len()
-        );
+fn binary(
+    mut stream: Stream<'_>,
+    mesh: &Mesh,
+    monitor: &dyn Monitor,
+) -> Result<Vec<String>, IoError> {
+    monitor.check()?;
+    let triangles = mesh.corner_count() - 2 * mesh.face_count();
+    let Ok(count) = u32::try_from(triangles) else {
+        let cause = format!("{triangles} triangles are more than an STL file can count");
         let help = "write several files, or another format";
         return Err(IoError::new(FaultKind::TooLarge, Place::File, cause, help));
     };
     let warnings = rounding(mesh)?;
-    let mut bytes = vec![0; HEADER + TRIANGLE * triangles.len()];
-    let (header, records) = bytes.split_at_mut(HEADER);
-    header.fill(b' ');
+    let mut header = [b' '; HEADER];
     // Not "solid": that would look like ASCII.
     let title = b"binary STL, tessgraph";
     header[..title.len()].copy_from_slice(title);
     header[HEADER - 4..].copy_from_slice(&count.to_le_bytes());
-    let records = records.as_chunks_mut::<TRIANGLE>().0;
-    parallel::fill(records, monitor, |index, record| {
-        let corners = places(mesh, &triangles[index]);
-        let vectors = std::iter::once(normal(corners)).chain(corners);
-        let numbers = vectors.flat_map(|vector| vector.to_array());
-        for (part, value) in record.as_chunks_mut::<4>().0.iter_mut().zip(numbers) {
-            *part = (value as f32).to_le_bytes();
-        }
+    stream.bytes(&header)?;
+    stream.elements(mesh.face_count(), |faces, out| {
+        let mut records = Vec::new();
+        mesh.for_triangles(faces, |_, triangle| {
+            let corners = places(mesh, triangle);
+            let vectors = [normal(corners), corners[0], corners[1], corners[2]];
+            let mut record = [0; TRIANGLE];
+            let parts = record.as_chunks_mut::<12>().0;
+            for (part, vector) in parts.iter_mut().zip(vectors) {
+                let [x, y, z] = vector.as_vec3().to_array().map(f32::to_le_bytes);
+                part.copy_from_slice([x, y, z].as_flattened());
+            }
+            records.push(record);
+        });
+        out.extend_from_slice(records.as_flattened());
     })?;
-    Ok(Written { bytes, warnings })
+    Ok(warnings)
 }
 
 /// Checks that every coordinate fits 32 bits, and warns of what rounding does.
@@ -121,33 +143,27 @@ fn rounding(mesh: &Mesh) -> Result<Vec<String>, IoError> {
     Ok(Vec::new())
 }
 
-fn ascii(mesh: &Mesh, triangles: &[[u32; 3]], monitor: &dyn Monitor) -> Result<Written, IoError> {
-    let mut out = Text::with_capacity(256 * triangles.len() + 32);
-    let triple = |out: &mut Text, vector: DVec3| {
+fn ascii(mut stream: Stream<'_>, mesh: &Mesh) -> Result<(), IoError> {
+    let triple = |out: &mut Text<'_>, vector: DVec3| {
         for value in vector.to_array() {
             out.text(" ").float(value);
         }
         out.text("\n");
     };
-    out.text("solid\n");
-    for (index, triangle) in triangles.iter().enumerate() {
-        if index.is_multiple_of(POLL) {
-            monitor.check()?;
-            monitor.progress(index as u64, triangles.len() as u64);
-        }
-        let corners = places(mesh, triangle);
-        out.text("facet normal");
-        triple(&mut out, normal(corners));
-        out.text("outer loop\n");
-        for corner in corners {
-            out.text("vertex");
-            triple(&mut out, corner);
-        }
-        out.text("endloop\nendfacet\n");
-    }
-    out.text("endsolid\n");
-    Ok(Written {
-        bytes: out.into_bytes(),
-        warnings: Vec::new(),
-    })
+    stream.bytes(b"solid\n")?;
+    stream.elements(mesh.face_count(), |faces, out| {
+        let mut out = Text::at_end_of(out);
+        mesh.for_triangles(faces, |_, triangle| {
+            let corners = places(mesh, triangle);
+            out.text("facet normal");
+            triple(&mut out, normal(corners));
+            out.text("outer loop\n");
+            for corner in corners {
+                out.text("vertex");
+                triple(&mut out, corner);
+            }
+            out.text("endloop\nendfacet\n");
+        });
+    })?;
+    stream.bytes(b"endsolid\n")
 }

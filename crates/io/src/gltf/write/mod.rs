@@ -3,13 +3,18 @@
 mod colors;
 mod json;
 mod parts;
+mod sections;
+
+use std::io;
 
 use glam::DVec3;
 use tessgraph_geometry::{Field, Mesh, Monitor, glam};
 
 use crate::Format;
 use crate::error::{FaultKind, IoError, Place};
+use crate::stream::Stream;
 use crate::write::Written;
+use parts::Source;
 
 /// Which normals a GLB file gets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -74,7 +79,8 @@ const REACH: f64 = 4.0;
 /// a plain grey, white under vertex colours. Vertices without faces are left
 /// out; a mesh without faces gives a valid file without a mesh, and a warning.
 ///
-/// The same mesh and options give the same bytes. Cost: O(corners).
+/// The same mesh and options give the same bytes. Cost: O(corners), and memory
+/// for the file.
 ///
 /// # Errors
 /// [`IoError::Fault`] if the mesh is beyond the reach of 32-bit numbers, if
@@ -94,14 +100,69 @@ pub fn write_glb(
     options: &GlbOptions<'_>,
     monitor: &dyn Monitor,
 ) -> Result<Written, IoError> {
-    write(mesh, options, monitor).map_err(|error| error.in_file("", Format::Glb))
+    Written::of(|sink| write_glb_to(sink, mesh, options, monitor))
 }
 
-fn write(mesh: &Mesh, options: &GlbOptions<'_>, monitor: &dyn Monitor) -> Result<Written, IoError> {
+/// [`write_glb`] to a file or another sink, with memory for some blocks of it
+/// only; gives the warnings.
+///
+/// # Errors
+/// As [`write_glb`], and [`IoError::NotTaken`]; the sink then has a part of the
+/// file.
+pub fn write_glb_to(
+    sink: &mut dyn io::Write,
+    mesh: &Mesh,
+    options: &GlbOptions<'_>,
+    monitor: &dyn Monitor,
+) -> Result<Vec<String>, IoError> {
+    write(sink, mesh, options, monitor).map_err(|error| error.in_file("", Format::Glb))
+}
+
+fn write(
+    sink: &mut dyn io::Write,
+    mesh: &Mesh,
+    options: &GlbOptions<'_>,
+    monitor: &dyn Monitor,
+) -> Result<Vec<String>, IoError> {
     monitor.check()?;
     let origin = local_origin(mesh)?;
     let colors = colors::resolve(mesh, &options.colors)?;
-    let parts = parts::split(mesh, origin, options.normals, &colors, monitor)?;
+    let source = Source::new(mesh, origin, options.normals, &colors.of, monitor)?;
+    let parts = source.split(monitor)?;
+    let described = sections::describe(&parts, &source);
+    let length = described.length;
+    let json = json::document(&source, &parts, described, origin, options, colors.extras);
+    let mut stream = Stream::new(sink, sections::element_count(&parts, &source), monitor);
+    start(&mut stream, json.into_bytes(), length)?;
+    sections::write(&parts, &source, &mut stream)?;
+    Ok(warnings(mesh))
+}
+
+/// Writes the container up to the content of the binary chunk, `length` bytes
+/// and a multiple of four.
+fn start(stream: &mut Stream<'_>, mut json: Vec<u8>, length: usize) -> Result<(), IoError> {
+    json.resize(json.len().next_multiple_of(4), b' ');
+    let total = 12 + 8 + json.len() + if length == 0 { 0 } else { 8 + length };
+    let Ok(whole) = u32::try_from(total) else {
+        let cause = format!("the file would have {total} bytes; GLB ends at 4294967295");
+        let help = "write the mesh in several files, or as PLY";
+        return Err(IoError::new(FaultKind::TooLarge, Place::File, cause, help));
+    };
+    let word = |value: usize| (value as u32).to_le_bytes();
+    stream.bytes(b"glTF")?;
+    stream.bytes(&2_u32.to_le_bytes())?;
+    stream.bytes(&whole.to_le_bytes())?;
+    stream.bytes(&word(json.len()))?;
+    stream.bytes(b"JSON")?;
+    stream.bytes(&json)?;
+    if length > 0 {
+        stream.bytes(&word(length))?;
+        stream.bytes(b"BIN\0")?;
+    }
+    Ok(())
+}
+
+fn warnings(mesh: &Mesh) -> Vec<String> {
     let mut warnings = Vec::new();
     if mesh.face_count() == 0 {
         warnings.push("the mesh has no faces, so the file has no mesh".to_owned());
@@ -112,8 +173,7 @@ fn write(mesh: &Mesh, options: &GlbOptions<'_>, monitor: &dyn Monitor) -> Result
         .iter()
         .filter(|attribute| !written(attribute.name()));
     warnings.extend(crate::obj::lost_attributes(lost, Format::Glb));
-    let bytes = json::file(mesh, &parts, origin, options, colors.extras)?;
-    Ok(Written { bytes, warnings })
+    warnings
 }
 
 /// The point all positions are written relative to: the origin itself, or a
