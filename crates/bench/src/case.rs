@@ -8,6 +8,7 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use crate::clock::{children_time, most_held, processor_time};
 use crate::held;
+use crate::outside::{Arrays, Outside};
 use crate::report::{self, Row};
 
 /// A run of one benchmark program: what its command line asks for.
@@ -139,6 +140,43 @@ impl<'a> Case<'a> {
     /// Another library doing the same work, on one thread.
     pub fn peer<T>(self, name: &'a str, run: impl FnMut() -> T + 'a) -> Self {
         self.add(name, Role::Peer, run)
+    }
+
+    /// A library of another language doing the same work, if it is installed:
+    /// `library` and `work` as `benches/peers/peers.py` knows them.
+    pub fn outside(self, library: &'a str, work: &str, arrays: &Arrays) -> Self {
+        if !self.bench.wants(&self.kernel) {
+            return self;
+        }
+        match Outside::start(library, work, arrays) {
+            Some(mut outside) => self.told(library, Role::Peer, move || outside.run()),
+            None => self,
+        }
+    }
+
+    /// Our kernel, which tells its time itself: where the clock counts, as for
+    /// what somebody waits for.
+    pub fn clocked(self, run: impl FnMut() -> Duration + 'a) -> Self {
+        self.told("tessgraph", Role::Ours, run)
+    }
+
+    /// A limit that tells its time itself.
+    pub fn clocked_limit(self, name: &'a str, run: impl FnMut() -> Duration + 'a) -> Self {
+        self.told(name, Role::Limit, run)
+    }
+
+    fn told(mut self, name: &'a str, role: Role, mut run: impl FnMut() -> Duration + 'a) -> Self {
+        let sample = move |_: &ThreadPool| {
+            let time = run();
+            Sample {
+                processor: time,
+                wall: time,
+                bytes: 0,
+            }
+        };
+        let run = Box::new(sample);
+        self.contestants.push(Contestant { name, role, run });
+        self
     }
 
     /// The least any program would need, from [`crate::limits`].

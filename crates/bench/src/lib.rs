@@ -14,10 +14,12 @@ mod case;
 mod clock;
 mod held;
 pub mod limits;
+mod outside;
 mod report;
 pub mod shapes;
 
 pub use case::{Bench, Case};
+pub use outside::Arrays;
 
 /// A number in 0..1 that depends on `seed` and `index` alone (SplitMix64,
 /// Steele et al. 2014): the fixed seed of every benchmark's input.

@@ -1,5 +1,9 @@
 //! One line per case, in Markdown.
-#![expect(clippy::print_stdout, reason = "a benchmark prints its figures")]
+#![expect(
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "a benchmark prints its figures"
+)]
 
 use std::time::Duration;
 
@@ -12,6 +16,11 @@ pub(crate) fn head(title: &str) {
         "| kernel | size | ns each | rate | bytes each | 2 threads: ns each, faster by | against peers | against the limit |"
     );
     println!("|---|---:|---:|---:|---:|---:|---|---|");
+}
+
+/// Says, beside the table, that somebody takes no part.
+pub(crate) fn absent(name: &str, reason: &str) {
+    eprintln!("not compared with {name}: {reason}");
 }
 
 /// A line under way.

@@ -1,6 +1,6 @@
 //! Faces of a mesh that cross each other.
 
-use tessgraph_bench::{Bench, shapes};
+use tessgraph_bench::{Arrays, Bench, shapes};
 use tessgraph_geometry::intersect::intersections;
 use tessgraph_geometry::{Mesh, Unmonitored};
 
@@ -27,12 +27,19 @@ fn main() {
             ("CheckIntersections, one sheet", &single),
             ("CheckIntersections, two sheets crossing", &double),
         ] {
+            let places: Vec<[f64; 3]> = mesh.positions().iter().map(|p| p.to_array()).collect();
+            let corners = mesh.topology().corners();
+            let arrays = Arrays::new();
+            arrays
+                .floats("positions", &places)
+                .indices("triangles", corners.as_chunks::<3>().0);
             bench
                 .case(kernel, mesh.face_count(), "triangles")
                 .ours(
                     || (),
                     |()| intersections(mesh, &Default::default(), &Unmonitored).expect("finite"),
                 )
+                .outside("meshlib", "intersect", &arrays)
                 .run();
         }
     }

@@ -1,6 +1,6 @@
 //! Catmull-Clark subdivision, adjacency of the coarse mesh included.
 
-use tessgraph_bench::{Bench, limits, shapes};
+use tessgraph_bench::{Arrays, Bench, limits, shapes};
 use tessgraph_geometry::subdivide::{Options, subdivide};
 use tessgraph_geometry::{Mesh, Unmonitored};
 
@@ -14,8 +14,13 @@ fn main() {
         ),
     ];
     for (kernel, (positions, faces)) in inputs {
+        let arrays = Arrays::new();
+        arrays
+            .floats("positions", &positions)
+            .indices("quads", &faces);
         for levels in bench.sizes([3, 4, 5]) {
             let count = faces.len() << (2 * levels);
+            arrays.indices("levels", &[[levels]]);
             let options = Options {
                 levels,
                 ..Default::default()
@@ -28,6 +33,7 @@ fn main() {
                     || Mesh::from_faces(positions.clone(), &faces).expect("a mesh"),
                     |mesh| subdivide(&mesh, options, &Unmonitored).expect("it is manifold"),
                 )
+                .outside("opensubdiv", "subdivide", &arrays)
                 .limit("first touch of the result", limits::first_touch(bytes))
                 .run();
         }

@@ -3,7 +3,7 @@
 use parry3d_f64::math::Vector;
 use parry3d_f64::query::PointQuery;
 use parry3d_f64::shape::TriMesh;
-use tessgraph_bench::{Bench, shapes, shuffle};
+use tessgraph_bench::{Arrays, Bench, shapes, shuffle};
 use tessgraph_geometry::glam::DVec3;
 use tessgraph_geometry::surface::Surface;
 use tessgraph_geometry::{Mesh, Unmonitored};
@@ -28,31 +28,41 @@ fn main() {
             .run();
         let surface = Surface::new(&mesh, &Unmonitored).expect("a surface");
         let corners = positions.iter().map(|&place| Vector::from(place)).collect();
-        let peer = TriMesh::new(corners, triangles.clone()).expect("a mesh");
+        let arrays = Arrays::new();
+        arrays.floats("positions", &positions);
+        arrays.indices("triangles", &triangles);
+        let meshes = Meshes {
+            surface: &surface,
+            peer: TriMesh::new(corners, triangles.clone()).expect("a mesh"),
+            arrays,
+        };
         let twice = [positions.clone(), positions].concat();
         let mut points = shapes::scattered(&twice, 1.0, 10.0, 1);
         points.truncate(triangles.len());
         let ordered = vectors(points.clone());
-        compare(
-            &bench,
-            "closest place, in mesh order",
-            &surface,
-            &peer,
-            &ordered,
-        );
+        compare(&bench, "closest place, in mesh order", &meshes, &ordered);
         ask_again(&bench, &surface, &ordered);
         shuffle(&mut points, 2);
-        compare(
-            &bench,
-            "closest place, shuffled",
-            &surface,
-            &peer,
-            &vectors(points),
-        );
+        let shuffled = vectors(points);
+        compare(&bench, "closest place, shuffled", &meshes, &shuffled);
     }
 }
 
-fn compare(bench: &Bench, kernel: &str, surface: &Surface, peer: &TriMesh, points: &[DVec3]) {
+/// The same surface for all.
+struct Meshes<'a> {
+    surface: &'a Surface,
+    peer: TriMesh,
+    arrays: Arrays,
+}
+
+fn compare(bench: &Bench, kernel: &str, meshes: &Meshes<'_>, points: &[DVec3]) {
+    let Meshes {
+        surface,
+        peer,
+        arrays,
+    } = meshes;
+    let places: Vec<[f64; 3]> = points.iter().map(|point| point.to_array()).collect();
+    arrays.floats("points", &places);
     bench
         .case(kernel, points.len(), "queries")
         .ours(
@@ -68,6 +78,8 @@ fn compare(bench: &Bench, kernel: &str, surface: &Surface, peer: &TriMesh, point
                 |point: &DVec3| peer.project_local_point(Vector::from(point.to_array()), true);
             points.iter().map(|point| one(point).point.x).sum::<f64>()
         })
+        .outside("fcpw", "closest", arrays)
+        .outside("libigl", "closest", arrays)
         .run();
 }
 

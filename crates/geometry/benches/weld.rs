@@ -1,6 +1,6 @@
 //! Joining vertices at the same place, and near each other.
 
-use tessgraph_bench::{Bench, random, shapes};
+use tessgraph_bench::{Arrays, Bench, random, shapes};
 use tessgraph_geometry::{Mesh, Unmonitored, weld_vertices};
 
 fn main() {
@@ -28,6 +28,14 @@ fn main() {
             .iter()
             .map(|p| p.to_array().map(|x| x as f32))
             .collect();
+        let places = |mesh: &Mesh| -> Vec<[f64; 3]> {
+            mesh.positions()
+                .iter()
+                .map(|place| place.to_array())
+                .collect()
+        };
+        let arrays = Arrays::new();
+        arrays.floats("points", &places(&exact));
         bench
             .case("weld, exact", count, "vertices")
             .ours(
@@ -37,14 +45,19 @@ fn main() {
             .peer("meshoptimizer f32", || {
                 meshopt::generate_vertex_remap(&small, Some(&indices))
             })
+            .outside("trimesh", "weld", &arrays)
             .run();
         let near = apart(1e-3);
+        arrays
+            .floats("points", &places(&near))
+            .floats("distance", &[[2e-3]]);
         bench
             .case("weld, by distance", count, "vertices")
             .ours(
                 || (),
                 |()| weld_vertices(&near, 2e-3, &Unmonitored).expect("a distance"),
             )
+            .outside("scipy", "weld_near", &arrays)
             .run();
     }
 }
