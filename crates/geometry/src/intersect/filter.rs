@@ -52,8 +52,14 @@ pub(super) fn apart<const N: usize, const M: usize>(
             in_b |= equal << j;
         }
     }
-    let a: [DVec3; N] = std::array::from_fn(|k| positions[places.0[k] as usize]);
-    let b: [DVec3; M] = std::array::from_fn(|k| positions[places.1[k] as usize]);
+    // Written one by one: made by a closure they would be copied, and waited for.
+    let (mut a, mut b) = ([DVec3::ZERO; N], [DVec3::ZERO; M]);
+    for (at, &place) in a.iter_mut().zip(places.0) {
+        *at = positions[place as usize];
+    }
+    for (at, &place) in b.iter_mut().zip(places.1) {
+        *at = positions[place as usize];
+    }
     let is_one = |mask: u32| mask.is_power_of_two();
     if in_a == 0 {
         lie_apart(&a, &b)
