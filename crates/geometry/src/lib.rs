@@ -40,6 +40,7 @@ mod test_shapes;
 mod test_support;
 mod topology;
 pub mod transform;
+mod vectors;
 mod weld;
 
 pub use array::{

@@ -6,6 +6,7 @@ use super::side::Cones;
 use super::stencil::Stencil;
 use crate::math::unit_or_zero;
 use crate::monitor::Quiet;
+use crate::vectors::widened;
 use crate::{GeometryError, Mesh, Monitor, parallel};
 
 /// Lowest valence at which the edge-sum scheme grows without bound at step 0.2.
@@ -55,7 +56,10 @@ pub(super) fn mean(
         let blend = |vertex: usize| blend(vertex, &field, stencil, share(vertex));
         parallel::fill_chunks(&mut next, &Quiet(monitor), |first, out| {
             if unit {
-                unit_pass(first, out, &field, blend);
+                widened(
+                    #[inline(always)]
+                    || unit_pass(first, out, &field, blend),
+                );
             } else {
                 for (vertex, out) in (first..).zip(out.iter_mut()) {
                     *out = blend(vertex).map_or(field[vertex], |(blend, total)| blend / total);
@@ -92,6 +96,7 @@ const BLOCK: usize = 16;
 
 /// One pass over the vertices from `first` on, to unit length: of a blend only
 /// its sense counts. One that vanishes leaves the direction as it is.
+#[inline(always)]
 fn unit_pass(
     first: usize,
     out: &mut [DVec3],
@@ -127,7 +132,7 @@ fn unit_pass(
 
 /// The weighted sum of the neighbours and their weights' total; `None` where
 /// no neighbour counts.
-#[inline]
+#[inline(always)]
 fn sum_of(stencil: &Stencil, vertex: usize, field: &[DVec3]) -> Option<(DVec3, f64)> {
     let (neighbours, weights) = stencil.row(vertex);
     let mut sum = DVec3::ZERO;

@@ -6,6 +6,7 @@ use rayon::prelude::*;
 use super::node::Waiting;
 use super::{ANYWHERE, Border, Closest, Surface};
 use crate::parallel::{self, CHUNK};
+use crate::vectors::widened;
 use crate::{GeometryError, Monitor};
 
 /// Cells along each axis of the curve's grid.
@@ -25,10 +26,15 @@ impl Surface {
         points: &[DVec3],
         monitor: &dyn Monitor,
     ) -> Result<Vec<Closest>, GeometryError> {
-        self.along_curve(points, monitor, |waiting, point, leaf| {
-            let closest = self.closest_with(waiting, point, leaf);
-            (closest, closest.leaf)
-        })
+        self.along_curve(
+            points,
+            monitor,
+            #[inline(always)]
+            |waiting, point, leaf| {
+                let closest = self.closest_with(waiting, point, leaf);
+                (closest, closest.leaf)
+            },
+        )
     }
 
     /// [`Surface::closest_all`] for points that have moved a little since `earlier`
@@ -54,10 +60,16 @@ impl Surface {
         let search = |(points, earlier): (&[DVec3], &[Closest])| {
             monitor.check()?;
             let mut waiting = Waiting::default();
-            let pairs = points.iter().zip(earlier);
-            Ok(pairs
-                .map(|(&point, earlier)| self.closest_with(&mut waiting, point, earlier.leaf))
-                .collect())
+            Ok(widened(
+                #[inline(always)]
+                || {
+                    let mut found = Vec::with_capacity(points.len());
+                    for (&point, earlier) in points.iter().zip(earlier) {
+                        found.push(self.closest_with(&mut waiting, point, earlier.leaf));
+                    }
+                    found
+                },
+            ))
         };
         let found: Vec<Vec<Closest>> = chunks.map(search).collect::<Result<_, GeometryError>>()?;
         Ok(found.concat())
@@ -74,10 +86,15 @@ impl Surface {
         border: Border,
         monitor: &dyn Monitor,
     ) -> Result<Vec<(f64, bool)>, GeometryError> {
-        self.along_curve(points, monitor, |waiting, point, leaf| {
-            let measured = self.measure_with(waiting, point, border, leaf);
-            ((measured.distance, measured.at_rim), measured.closest.leaf)
-        })
+        self.along_curve(
+            points,
+            monitor,
+            #[inline(always)]
+            |waiting, point, leaf| {
+                let measured = self.measure_with(waiting, point, border, leaf);
+                ((measured.distance, measured.at_rim), measured.closest.leaf)
+            },
+        )
     }
 
     /// `query(point, leaf)` for each point, given the leaf the last one ended in.
@@ -92,12 +109,18 @@ impl Surface {
             monitor.check()?;
             let mut leaf = ANYWHERE;
             let mut waiting = Waiting::default();
-            let one = |&key: &u64| {
-                let (found, end) = query(&mut waiting, points[index_of(key)], leaf);
-                leaf = end;
-                found
-            };
-            Ok(chunk.iter().map(one).collect::<Vec<_>>())
+            Ok(widened(
+                #[inline(always)]
+                || {
+                    let mut found = Vec::with_capacity(chunk.len());
+                    for &key in chunk {
+                        let (one, end) = query(&mut waiting, points[index_of(key)], leaf);
+                        found.push(one);
+                        leaf = end;
+                    }
+                    found
+                },
+            ))
         };
         let found: Vec<Vec<T>> = order
             .par_chunks(CHUNK)
