@@ -1,5 +1,7 @@
 //! Normals of faces and vertices.
 
+mod angles;
+
 use glam::DVec3;
 
 use crate::math::{angle_between, unit_or_zero};
@@ -87,12 +89,16 @@ pub fn vertex_normals(
         NormalWeights::Angle | NormalWeights::Uniform => face_normals(mesh, monitor)?,
     };
     let adjacency = mesh.topology().adjacency_with(monitor)?;
+    let angles = match weights {
+        NormalWeights::Angle => angles::corner_angles(mesh, monitor)?,
+        NormalWeights::Area | NormalWeights::Uniform => Vec::new(),
+    };
     parallel::map(mesh.vertex_count(), monitor, |vertex| {
         let mut sum = DVec3::ZERO;
         for &corner in adjacency.vertex_corners(vertex) {
             let normal = of_face[adjacency.corner_faces()[corner as usize] as usize];
             sum += match weights {
-                NormalWeights::Angle => normal * corner_angle(mesh, corner),
+                NormalWeights::Angle => normal * angles[corner as usize],
                 NormalWeights::Area => normal * 0.5,
                 NormalWeights::Uniform => normal,
             };
