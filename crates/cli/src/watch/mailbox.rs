@@ -5,10 +5,12 @@ use std::sync::Arc;
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
 use std::time::Instant;
 
+use super::debounce::Step;
+
 /// Something the watcher has to deal with.
 pub(crate) enum Message {
     /// Something happened at these places.
-    Touched(Vec<PathBuf>),
+    Touched(Vec<PathBuf>, Step),
     /// So much happened that nobody can say where.
     TouchedAnywhere,
     /// The system tells of changes no more, for this reason.

@@ -28,7 +28,7 @@ use std::time::Instant;
 
 use crate::commands::run::Control;
 use crate::interrupt::{self, INTERRUPTED};
-use debounce::Debounce;
+use debounce::{Debounce, Step};
 use places::Places;
 
 pub(crate) use cause::Cause;
@@ -159,7 +159,7 @@ impl<'s, 'a: 's, W: Work<'a>> Watcher<'s, 'a, W> {
                 self.work.deaf(&reason);
             }
             let looked = self.places.look_if_due(Instant::now());
-            self.touch(looked);
+            self.touch(looked, Step::Begun);
             self.stop_if_stale();
         }
     }
@@ -173,13 +173,13 @@ impl<'s, 'a: 's, W: Work<'a>> Watcher<'s, 'a, W> {
     /// Deals with a message; an exit status if it was the last one.
     fn take(&mut self, message: Message) -> Option<u8> {
         match message {
-            Message::Touched(places) => {
+            Message::Touched(places, step) => {
                 let files = self.places.files_at(&places);
-                self.touch(files);
+                self.touch(files, step);
             }
             Message::TouchedAnywhere => {
                 let files = self.places.dependencies.all();
-                self.touch(files);
+                self.touch(files, Step::Begun);
             }
             Message::Deaf(reason) => self.places.deafen(reason),
             Message::Read(path, content) => {
@@ -188,7 +188,7 @@ impl<'s, 'a: 's, W: Work<'a>> Watcher<'s, 'a, W> {
                     self.unlooked.insert(path);
                 } else if is_new && self.places.is_changed(&path) {
                     // Between being read and being watched.
-                    self.touch([path].into());
+                    self.touch([path].into(), Step::Begun);
                 }
             }
             Message::Ended => return self.ended(),
@@ -207,11 +207,11 @@ impl<'s, 'a: 's, W: Work<'a>> Watcher<'s, 'a, W> {
         None
     }
 
-    fn touch(&mut self, files: BTreeSet<PathBuf>) {
+    fn touch(&mut self, files: BTreeSet<PathBuf>, step: Step) {
         if files.is_empty() {
             return;
         }
-        self.debounce.note(Instant::now());
+        self.debounce.note(Instant::now(), &files, step);
         // A folder may be another one now, or a link lead elsewhere.
         self.places.follow();
         self.touched.extend(files.iter().cloned());

@@ -3,9 +3,10 @@
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 
-use notify::event::{AccessKind, AccessMode, Flag};
+use notify::event::{AccessKind, AccessMode, Flag, ModifyKind, RenameMode};
 use notify::{ErrorKind, Event, EventKind, RecommendedWatcher, RecursiveMode, Watcher};
 
+use super::debounce::Step;
 use super::mailbox::{Message, Post};
 
 /// Has the system tell of whatever happens in some folders.
@@ -68,13 +69,18 @@ impl Notices {
 fn message(event: notify::Result<Event>) -> Option<Message> {
     match event {
         Ok(event) if event.attrs.flag() == Some(Flag::Rescan) => Some(Message::TouchedAnywhere),
-        Ok(event) => match event.kind {
-            EventKind::Access(AccessKind::Close(AccessMode::Write)) => {
-                Some(Message::Touched(event.paths))
-            }
-            EventKind::Access(_) => None,
-            _ => Some(Message::Touched(event.paths)),
-        },
+        Ok(event) => {
+            let step = match event.kind {
+                EventKind::Access(AccessKind::Close(AccessMode::Write))
+                | EventKind::Modify(ModifyKind::Name(RenameMode::To | RenameMode::Both)) => {
+                    Step::Done
+                }
+                EventKind::Access(_) => return None,
+                EventKind::Modify(ModifyKind::Metadata(_)) => Step::Other,
+                _ => Step::Begun,
+            };
+            Some(Message::Touched(event.paths, step))
+        }
         Err(error) if matches!(error.kind, ErrorKind::MaxFilesWatch) => {
             Some(Message::Deaf(words(&error)))
         }
@@ -153,7 +159,7 @@ mod tests {
             let come = mailbox.wait(deadline);
             assert!(!come.is_empty(), "nothing was told in time");
             for message in come {
-                let Message::Touched(places) = message else {
+                let Message::Touched(places, _) = message else {
                     continue;
                 };
                 assert!(!places.contains(&root.join("there")));
