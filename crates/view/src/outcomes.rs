@@ -32,7 +32,11 @@ pub fn outcomes(evaluation: &Evaluation, changes: &[KeyChange]) -> Vec<NodeOutco
             place += 1;
         }
         if let Some(node) = outcomes.get_mut(place) {
-            let line = format!("{}: {} -> {}", change.input, change.old, change.new);
+            let line = match change.is_first {
+                true if node.outcome != Outcome::Computed.name() => continue,
+                true => "computed for the first time".to_owned(),
+                false => format!("{}: {} -> {}", change.input, change.old, change.new),
+            };
             let text = node.explain.get_or_insert_default();
             if !text.is_empty() {
                 text.push('\n');

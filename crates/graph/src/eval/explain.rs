@@ -35,6 +35,8 @@ pub struct KeyChange {
     /// The nodes whose results the input takes: the change came from there. If
     /// there are none this is the place where the graph or a file was edited.
     pub from: Vec<String>,
+    /// Whether the last run had no node of that name.
+    pub is_first: bool,
 }
 
 /// The key parts of all nodes of a run, by node name.
@@ -208,6 +210,7 @@ impl KeyRecord {
                     old: "not in the last run".to_owned(),
                     new: node.kind.clone(),
                     from: Vec::new(),
+                    is_first: true,
                 }),
             }
         }
@@ -252,6 +255,7 @@ impl NodeRecord {
                 old,
                 new,
                 from: from(input).unwrap_or_default(),
+                is_first: false,
             });
         };
         if self.kind != old.kind {
