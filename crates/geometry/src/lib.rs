@@ -44,12 +44,12 @@ mod vectors;
 mod weld;
 
 pub use array::{
-    ArrayCounts, ArrayDomain, ArrayOptions, ArrayPoint, Arrayed, BASE_FACE, COMPONENT,
-    COMPONENT_FACE, Displace, Height, Interpolation, Join, JoinReport, NO_COMPONENT, PANEL,
-    PatchGrids, PerVertexOptions, PerVertexReport, Straight, array_compensated, array_components,
-    array_components_with, array_counts, border_edge_counts, border_faces, border_patch_turns,
-    border_side_counts, border_turns, choose_along, choose_at_border, choose_by_index,
-    choose_by_material, choose_random,
+    ArrayCounts, ArrayDomain, ArrayOptions, ArrayParts, ArrayPoint, Arrayed, BASE_FACE, COMPONENT,
+    COMPONENT_FACE, Displace, GridPlace, Height, Interpolation, Join, JoinReport, NO_COMPONENT,
+    PANEL, PartPoint, PartVectors, PatchGrids, PerVertexOptions, PerVertexReport, Straight,
+    array_compensated, array_components, array_components_with, array_counts, array_parts,
+    border_edge_counts, border_faces, border_patch_turns, border_side_counts, border_turns,
+    choose_along, choose_at_border, choose_by_index, choose_by_material, choose_random,
 };
 pub use directions::{DirectionSource, Directions};
 pub use displace::displace_vertices;

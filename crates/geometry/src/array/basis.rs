@@ -4,6 +4,31 @@ use glam::DVec2;
 
 use super::Piece;
 
+/// A place in a grid of base vertices, bilinear between four of them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GridPlace {
+    /// The first of the four in the grid; the others are the next one, and those
+    /// a row further.
+    pub first: u32,
+    /// How far it is from the first to the next one along u and along v, from 0 to
+    /// 1; more or less beyond the grid.
+    pub fraction: DVec2,
+}
+
+impl GridPlace {
+    /// The place of (u, v) in a grid of side n: in the small face that holds it, the
+    /// last one for u = 1 and for all beyond the grid.
+    pub(super) fn new(uv: DVec2, side: u32) -> Self {
+        let n = f64::from(side);
+        let cell = |x: f64| (x * n).floor().clamp(0.0, n - 1.0);
+        let (i, j) = (cell(uv.x), cell(uv.y));
+        Self {
+            first: j as u32 * (side + 1) + i as u32,
+            fraction: DVec2::new(uv.x * n - i, uv.y * n - j),
+        }
+    }
+}
+
 /// Four grid vertices and their bilinear weights.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Weights {
@@ -13,14 +38,15 @@ pub(super) struct Weights {
 }
 
 impl Weights {
-    /// Bilinear weights at (u, v) of a grid of side n: from the small face that
-    /// holds the place, the last one for u = 1 and for all beyond the grid.
+    /// Bilinear weights at (u, v) of a grid of side n.
     pub(super) fn new(uv: DVec2, side: u32) -> Self {
-        let n = f64::from(side);
-        let cell = |x: f64| (x * n).floor().clamp(0.0, n - 1.0);
-        let (i, j) = (cell(uv.x), cell(uv.y));
-        let (f, g) = (uv.x * n - i, uv.y * n - j);
-        let first = j as u32 * (side + 1) + i as u32;
+        Self::of(GridPlace::new(uv, side), side)
+    }
+
+    /// Bilinear weights of a place in a grid of side n.
+    pub(super) fn of(place: GridPlace, side: u32) -> Self {
+        let GridPlace { first, fraction } = place;
+        let (f, g) = (fraction.x, fraction.y);
         Self {
             at: [first, first + 1, first + side + 1, first + side + 2],
             weight: [(1.0 - f) * (1.0 - g), f * (1.0 - g), (1.0 - f) * g, f * g],
@@ -33,7 +59,16 @@ impl Weights {
     where
         T: Copy + std::ops::Add<Output = T> + std::ops::Mul<f64, Output = T>,
     {
-        let [a, b, c, d] = self.at.map(|at| values[at as usize]);
+        self.sum_by(|at| values[at])
+    }
+
+    /// Weighted sum of what `value` says of each place in the grid.
+    #[inline]
+    pub(super) fn sum_by<T>(&self, value: impl Fn(usize) -> T) -> T
+    where
+        T: Copy + std::ops::Add<Output = T> + std::ops::Mul<f64, Output = T>,
+    {
+        let [a, b, c, d] = self.at.map(|at| value(at as usize));
         let [p, q, r, s] = self.weight;
         (a * p + b * q) + (c * r + d * s)
     }

@@ -77,10 +77,10 @@ pub(super) struct Map<'a> {
 }
 
 /// Directions in the form that is interpolated.
-struct Vectors {
+pub(super) struct Vectors {
     /// Unit directions, or the vectors themselves without `lengths`.
-    directions: Vec<DVec3>,
-    lengths: Option<Vec<f64>>,
+    pub(super) directions: Vec<DVec3>,
+    pub(super) lengths: Option<Vec<f64>>,
 }
 
 impl Vectors {
@@ -130,13 +130,19 @@ impl PatchVectors {
         if self.lengths.is_empty() {
             return sum;
         }
-        // Sums of unit vectors: only opposite ones come near zero.
-        let length = sum.length();
-        if length > CANCELLED {
-            sum * (point.direction.sum(&self.lengths) / length)
-        } else {
-            DVec3::ZERO
-        }
+        with_length(sum, point.direction.sum(&self.lengths))
+    }
+}
+
+/// A sum of unit vectors made that long; zero where they cancel out.
+#[inline]
+pub(super) fn with_length(sum: DVec3, length: f64) -> DVec3 {
+    // Only opposite ones come near zero.
+    let now = sum.length();
+    if now > CANCELLED {
+        sum * (length / now)
+    } else {
+        DVec3::ZERO
     }
 }
 
@@ -199,6 +205,20 @@ impl<'a> Map<'a> {
         let weights = NormalWeights::Angle;
         self.normals = Some(vertex_normals(self.base, weights, true, monitor)?);
         Ok(self)
+    }
+
+    /// What heights are multiplied by at each vertex of the base, one by one.
+    pub(super) fn factors(&self) -> Vec<Vec<f64>> {
+        let vertices = 0..self.base.vertex_count();
+        let scale = self
+            .scale
+            .map(|scale| vertices.map(|v| scale.at(v)).collect());
+        self.size.clone().into_iter().chain(scale).collect()
+    }
+
+    /// The directions of both sides, the second where it is another.
+    pub(super) fn into_vectors(self) -> (Vectors, Option<Vectors>) {
+        (self.outward, self.inward)
     }
 
     /// Positions of all output vertices, before neighbours are joined.

@@ -6,12 +6,14 @@ mod choose;
 mod grids;
 mod layout;
 mod map;
+mod parts;
 mod per_vertex;
 mod replicate;
 #[cfg(test)]
 mod tests;
 mod weld;
 
+pub use basis::GridPlace;
 pub use choose::{
     NO_COMPONENT, border_edge_counts, border_faces, border_patch_turns, border_side_counts,
     border_turns, choose_along, choose_at_border, choose_by_index, choose_by_material,
@@ -20,6 +22,7 @@ pub use choose::{
 pub use grids::PatchGrids;
 pub use layout::{ArrayCounts, array_counts};
 pub use map::{ArrayPoint, Displace, Straight};
+pub use parts::{ArrayParts, PartPoint, PartVectors, array_parts};
 pub use per_vertex::{PerVertexOptions, PerVertexReport, array_compensated};
 pub use weld::JoinReport;
 
@@ -213,11 +216,7 @@ pub fn array_components_with<D: Displace + ?Sized>(
                 .into(),
         ));
     }
-    let fit = options.fit.unwrap_or(&Fit::Bounds);
-    let pieces = components
-        .iter()
-        .map(|component| Piece::new(component, fit, options.height, directions))
-        .collect::<Result<Vec<_>, _>>()?;
+    let pieces = pieces_of(components, directions, options)?;
     let layout = Layout::new(base, &pieces, options, monitor)?;
     if !options.allow_zero_directions {
         check_directions(directions, &pieces, &layout)?;
@@ -246,6 +245,19 @@ pub fn array_components_with<D: Displace + ?Sized>(
         array.vertex_sources = Some(welded.vertex_sources);
     }
     Ok(array)
+}
+
+/// The components in the unit square.
+fn pieces_of(
+    components: &[&Mesh],
+    directions: &Directions,
+    options: &ArrayOptions<'_>,
+) -> Result<Vec<Piece>, GeometryError> {
+    let fit = options.fit.unwrap_or(&Fit::Bounds);
+    let pieces = components.iter();
+    pieces
+        .map(|component| Piece::new(component, fit, options.height, directions))
+        .collect()
 }
 
 /// A component in the unit square.

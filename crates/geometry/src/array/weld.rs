@@ -37,9 +37,22 @@ pub(super) fn join(
     layout: &Layout<'_>,
     monitor: &dyn Monitor,
 ) -> Result<(Welded, JoinReport), GeometryError> {
+    let (targets, open) = targets(pieces, layout);
+    let welded = merge_vertices(mesh, &targets, monitor)?;
+    let report = JoinReport {
+        joined: welded.joined,
+        open,
+        dropped_faces: welded.dropped_faces,
+    };
+    Ok((welded, report))
+}
+
+/// For each vertex of the array the first of those it is joined with, itself if
+/// there is no other; and how many vertices stay open.
+pub(super) fn targets(pieces: &[Piece], layout: &Layout<'_>) -> (Vec<u32>, usize) {
     let rims = rims(pieces);
     let mut joiner = Joiner {
-        target: (0..mesh.vertex_count() as u32).collect(),
+        target: (0..layout.vertex_starts.last().copied().unwrap_or(0)).collect(),
         open: 0,
     };
     let Borders {
@@ -70,13 +83,7 @@ pub(super) fn join(
         rows.extend(group.iter().map(|&(_, row)| row));
         joiner.join(&mut rows, cells_at[group[0].0 as usize] as usize);
     }
-    let welded = merge_vertices(mesh, &joiner.target, monitor)?;
-    let report = JoinReport {
-        joined: welded.joined,
-        open: joiner.open,
-        dropped_faces: welded.dropped_faces,
-    };
-    Ok((welded, report))
+    (joiner.target, joiner.open)
 }
 
 /// (place, height, place of direction); `None` for a vertex that cannot match.

@@ -1,4 +1,5 @@
 mod join;
+mod parts;
 mod peer;
 mod per_vertex;
 mod properties;
