@@ -116,6 +116,19 @@ impl Mesh {
         })
     }
 
+    /// The same mesh with the faces of another one, which are the same: so that both
+    /// share them, and what is built about them.
+    ///
+    /// # Errors
+    /// [`GeometryError::OtherTopology`] if they are not the same.
+    pub fn sharing(&self, topology: &Arc<Topology>) -> Result<Self, GeometryError> {
+        self.topology.check_same(topology, "the faces")?;
+        Ok(Self {
+            topology: Arc::clone(topology),
+            ..self.clone()
+        })
+    }
+
     /// The same mesh with `attribute` added, replacing one of the same name and
     /// domain in its place.
     ///

@@ -180,6 +180,23 @@ impl Cache {
         topology
     }
 
+    /// The same value: a mesh with the faces of one that is in use already gets
+    /// those, and with them the neighbours that are known.
+    pub(super) fn shared(&self, value: Value) -> Value {
+        let Value::Mesh(mesh) = &value else {
+            return value;
+        };
+        // Before the lock is taken: hashing uses the thread pool.
+        let digest = mesh.topology().digest();
+        let topology = self.share(digest, Arc::clone(mesh.topology()));
+        match mesh.sharing(&topology) {
+            Ok(sharing) if !Arc::ptr_eq(&topology, mesh.topology()) => {
+                Value::Mesh(Arc::new(sharing))
+            }
+            _ => value,
+        }
+    }
+
     /// Keeps results in memory.
     pub(super) fn insert(&self, key: Digest, entry: &Arc<Entry>, values: &[Value]) {
         for (known, value) in entry.results.iter().zip(values) {

@@ -12,7 +12,7 @@ use tessgraph_geometry::{
 
 use super::entry::Entry;
 use super::frame::{self, FileKind};
-use crate::eval::cache::Known;
+use crate::eval::cache::{Cache, Known};
 use crate::node::FileUse;
 use crate::value::encode::{Decoder, Encoder, decode_topology, encode_topology};
 use crate::value::{Column, ColumnValues, Report, ReportEntry, Scalar, Table, Value};
@@ -315,4 +315,28 @@ fn a_file_is_refused_for_any_flipped_bit_and_under_another_name() {
         frame::content(FileKind::Value, Digest::of(b"other"), &file),
         None
     );
+}
+
+#[test]
+fn meshes_with_the_same_faces_share_them() {
+    let mesh = |height: f64| {
+        let places = vec![[0.0, 0.0, height], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+        let mesh = Mesh::from_faces(places, &[[0, 1, 2]]).unwrap();
+        Value::Mesh(Arc::new(mesh))
+    };
+    let topology = |value: &Value| match value {
+        Value::Mesh(mesh) => Arc::clone(mesh.topology()),
+        _ => panic!("a mesh"),
+    };
+    let cache = Cache::new(1_000_000, None);
+    let first = cache.shared(mesh(0.0));
+    let (other, digest) = (mesh(1.0), mesh(1.0).digest());
+    assert!(!Arc::ptr_eq(&topology(&first), &topology(&other)));
+    let other = cache.shared(other);
+    assert!(Arc::ptr_eq(&topology(&first), &topology(&other)));
+    assert_eq!(other.digest(), digest);
+    // What nobody uses any more is not kept for this.
+    drop((first, other));
+    let later = cache.shared(mesh(2.0));
+    assert_eq!(Arc::strong_count(&topology(&later)), 2);
 }

@@ -59,7 +59,10 @@ impl Run<'_> {
         let (mut values, mut to_store) = (None, None);
         match result {
             Ok(computed) => {
-                let computed = Values::from(computed);
+                let computed: Values = match self.cache {
+                    Some(cache) => computed.into_iter().map(|v| cache.shared(v)).collect(),
+                    None => computed.into(),
+                };
                 done.run.bytes = Value::List(Arc::clone(&computed)).byte_size();
                 done.results = computed.iter().map(Known::new).collect();
                 let entry = Entry {
