@@ -232,15 +232,18 @@ fn elements_are_told_exactly_in_the_units_of_the_file() {
         (&json!(5), &json!(0))
     );
     let lines = picked["lines"].as_array().expect("lines");
-    assert!(lines.contains(&json!(["corners", "4"])), "{picked}");
-    assert!(lines.contains(&json!(["flat", "0 cm"])), "{picked}");
+    let told = |text: &str| json!({"text": text, "exact": text});
+    assert!(lines.contains(&json!(["corners", told("4")])), "{picked}");
+    assert!(lines.contains(&json!(["flat", told("0 cm")])), "{picked}");
     assert_eq!(picked["vertices"].as_array().map(Vec::len), Some(4));
     // Three columns and two rows over a square of 100 cm: far corners.
     let ends = (json!({"vertex": 0}), json!({"vertex": 11}));
     page.ask(&json!({"type": "measure", "request": 6, "from": ends.0, "to": ends.1}));
     let measured = page.any("measured");
-    assert_eq!(measured["delta"], json!(["100 cm", "100 cm", "0 cm"]));
-    assert_eq!(measured["distance"], "141.4213562373 cm");
+    let delta = [told("100 cm"), told("100 cm"), told("0 cm")];
+    assert_eq!(measured["delta"], json!(delta));
+    let distance = json!({"text": "141.42 cm", "exact": "141.4213562373 cm"});
+    assert_eq!(measured["distance"], distance);
     page.ask(&json!({"type": "measure", "request": 7, "from": {"face": 99}, "to": ends.1}));
     assert_eq!(page.any("notice")["level"], "warning");
 }

@@ -1,6 +1,7 @@
 // The page: its parts, and what each action does.
 import type { Action } from "./core/keys.ts";
 import { actionOf } from "./core/keys.ts";
+import { viewFragment } from "./core/link.ts";
 import { element } from "./core/dom.ts";
 import type { GraphNode, Shown, Span } from "./core/protocol.ts";
 import type { DrawerSize, DrawerTab } from "./core/settings.ts";
@@ -14,6 +15,7 @@ import { GraphPanel } from "./panels/graph.ts";
 import { Legend } from "./panels/legend.ts";
 import { Banner, MessagesPanel } from "./panels/messages.ts";
 import { ParametersPanel } from "./panels/parameters.ts";
+import { ShareDialog } from "./panels/share.ts";
 import { SourcePanel } from "./panels/source.ts";
 import { StudyPanel } from "./panels/study.ts";
 import { TablePanel } from "./panels/table.ts";
@@ -23,8 +25,9 @@ import { Look } from "./look.ts";
 import { Stage } from "./stage.ts";
 import { ColourTool } from "./tools/colours.ts";
 import { PickTool } from "./tools/pick.ts";
+import { savePage } from "./tools/save.ts";
 import { captionLines, compose, download } from "./tools/screenshot.ts";
-import type { LoadTimes } from "./view/buffers.ts";
+import type { BufferSource, LoadTimes } from "./view/buffers.ts";
 
 export class App {
   private readonly look: Look;
@@ -44,6 +47,7 @@ export class App {
   private readonly banner: Banner;
   private readonly help = helpDialog();
   private readonly palette = new Palette();
+  private readonly share: ShareDialog;
   private readonly colours: ColourTool | undefined;
   private readonly pick: PickTool | undefined;
 
@@ -51,11 +55,12 @@ export class App {
     private readonly store: Store,
     host: HTMLElement,
     address: URL,
+    source: BufferSource,
   ) {
     const act = (action: Action): void => this.act(action);
     const show = (node: string, result?: string): void => this.show(node, result);
     const openSource = (node: GraphNode): void => this.openSource(node.span, node.line);
-    this.stage = new Stage(store, act, address);
+    this.stage = new Stage(store, act, source);
     const { viewer } = this.stage;
     this.colours = viewer ? new ColourTool(viewer, () => this.legend) : undefined;
     this.pick = viewer ? new PickTool(store, viewer, this.stage.readout) : undefined;
@@ -93,16 +98,18 @@ export class App {
       source: this.source.root,
       study: this.study.root,
     };
+    this.share = new ShareDialog(store, { link: () => this.link(), save: () => savePage(address) });
     this.drawer = new Drawer(panels, (tab, size) => this.keepDrawer(tab, size), this.look.view.tab, this.look.view.drawer);
     const middle = element("div", { class: "middle" }, this.stage.root, this.viewbar.root, this.drawer.root);
     const rail = element("aside", { class: "rail" }, this.parameters.root, checks.root);
-    host.append(element("div", { class: "page" }, this.topbar.root, this.banner.root, element("div", { class: "columns" }, rail, middle)), this.help, this.palette.root);
+    host.append(element("div", { class: "page" }, this.topbar.root, this.banner.root, element("div", { class: "columns" }, rail, middle)), this.help, this.palette.root, this.share.root);
     this.listen();
   }
 
   private listen(): void {
     const { store } = this;
     document.addEventListener("keydown", (event) => this.key(event));
+    window.addEventListener("hashchange", () => this.followLink());
     store.on("hello", ({ file, folder, session }) => this.greet(`${folder}/${file}`, session));
     store.on("shown", (shown) => void this.showPicture(shown));
     this.study.onStudy = () => this.drawer.setCount("study", "•", false);
@@ -137,14 +144,38 @@ export class App {
       this.restoreShown = true;
     }
     if (!this.look.turnTo(graph)) return;
+    const selection = this.look.takeLink();
     const { view } = this.look;
     this.restoreShown = view.node !== undefined;
-    if (this.colours) {
-      this.colours.wanted = view.field;
-      this.colours.locked = view.locked;
-    }
-    this.pick?.restorePanels(view.panels);
+    this.restoreColours();
+    this.pick?.restorePanels(view.panels, selection);
     this.drawer.open(view.tab, view.drawer);
+  }
+
+  /** A link was opened in the page it leads to. */
+  private followLink(): void {
+    const selection = this.look.takeLink();
+    if (!selection) return;
+    const { view } = this.look;
+    this.restoreColours();
+    this.pick?.restorePanels(view.panels, selection);
+    const shown = this.store.get("shown");
+    if (view.node && (view.node.node !== shown?.node || view.node.result !== shown.result)) this.show(view.node.node, view.node.result);
+    else if (shown) void this.showPicture(shown);
+  }
+
+  private restoreColours(): void {
+    if (!this.colours) return;
+    this.colours.wanted = this.look.view.field;
+    this.colours.locked = this.look.view.locked;
+  }
+
+  /** The address of what is seen now. */
+  private link(): string {
+    this.look.save();
+    const address = new URL(window.location.href);
+    address.hash = viewFragment(this.look.view, this.pick?.selection ?? { panels: [] });
+    return address.href;
   }
 
   /** After a reload or a restart the server shows its own choice; ask once for ours. */
@@ -214,7 +245,7 @@ export class App {
   private key(event: KeyboardEvent): void {
     const target = event.target as HTMLElement;
     const action = actionOf(event);
-    if (!action || this.help.open || this.palette.root.open) return;
+    if (!action || document.querySelector("dialog[open]")) return;
     const typing = target.matches("input:not([type=range], [type=checkbox]), textarea");
     if (typing && action !== "cancel") return;
     // Space presses what is focused, and a list's letters choose in it.
@@ -262,6 +293,7 @@ export class App {
     undo: () => this.store.send({ type: "undo" }),
     redo: () => this.store.send({ type: "redo" }),
     run: () => this.store.send({ type: "run" }),
+    share: () => this.share.open(),
     search: () => this.palette.open(this.searchEntries(), "Search nodes and parameters"),
     commands: () => this.palette.open([...commandEntries((a) => this.act(a)), ...this.searchEntries()], "Commands, nodes, parameters"),
     drawer: () => this.drawer.open(this.drawer.tab, nextSize(this.drawer.size)),

@@ -1,5 +1,6 @@
 // How the model is looked at: camera, theme, edges, section. Kept between pages;
 // nothing here changes a result.
+import { readFragment, type Selection } from "./core/link.ts";
 import type { Store } from "./core/store.ts";
 import { lengthUnit } from "./core/store.ts";
 import {
@@ -43,6 +44,19 @@ export class Look {
     if (this.view.camera) this.viewer?.restoreCamera(this.view.camera);
     this.apply();
     return true;
+  }
+
+  /** Takes over the view that the address names, and the address forgets it; gives what is picked there. */
+  takeLink(): Selection | undefined {
+    const linked = readFragment(window.location.hash);
+    if (!linked) return undefined;
+    // A reload keeps how the page is looked at by then.
+    history.replaceState(null, "", window.location.pathname + window.location.search);
+    const { selection, ...view } = linked;
+    if (view.camera) this.viewer?.restoreCamera(view.camera);
+    // Also what the link does not name: there was no section, say.
+    this.change({ field: undefined, section: undefined, panels: undefined, ...view });
+    return selection ?? { panels: [] };
   }
 
   save(): void {

@@ -5,6 +5,7 @@ import type { Shown, Status } from "./core/protocol.ts";
 import { lengthUnit, type Store } from "./core/store.ts";
 import { formatTime } from "./core/units.ts";
 import { Readout } from "./panels/dialogs.ts";
+import type { BufferSource } from "./view/buffers.ts";
 import { Gizmo } from "./view/gizmo.ts";
 import { ScaleBar } from "./view/scale.ts";
 import { Viewer } from "./view/viewer.ts";
@@ -22,14 +23,14 @@ export class Stage {
   constructor(
     private readonly store: Store,
     act: (action: Action) => void,
-    address: URL,
+    source: BufferSource,
   ) {
     this.gizmo = new Gizmo(act);
     this.offScreen = button("The model is off screen: F fits it", "Fit the whole model (F)", () => act("fit"), { class: "off-screen" });
     this.offScreen.hidden = true;
     const smooth = (): boolean => !window.matchMedia("(prefers-reduced-motion: reduce)").matches;
     try {
-      this.viewer = new Viewer(this.root, address, smooth);
+      this.viewer = new Viewer(this.root, source, smooth);
       this.viewer.onFrame = () => this.follow();
     } catch (error) {
       this.say(`This browser gives no WebGL2, so there is no picture; parameters, checks and messages work. (${String(error)})`);

@@ -8,9 +8,9 @@ use tessgraph_geometry::measure::{measure_mesh, planarity};
 use tessgraph_geometry::surface::Surface;
 use tessgraph_geometry::{AttributeValues, Domain, Mesh, Quantity, Unmonitored};
 
-use crate::protocol::{MeasureEnd, Measured, Picked};
+use crate::protocol::{Amount, MeasureEnd, Measured, Picked};
 use crate::shown::Subject;
-use crate::values::amount;
+use crate::values::{amount, amount_beside};
 
 /// What is known of a face, of a vertex, or of nothing.
 ///
@@ -26,7 +26,7 @@ pub fn pick(subject: &Subject, request: u64, face: Option<usize>, vertex: Option
         of_face(subject, face, &mut lines);
     }
     if !lines.is_empty() {
-        lines.push(("made by".to_owned(), subject.node.clone()));
+        lines.push(("made by".to_owned(), subject.node.clone().into()));
     }
     let outline = face.map(|face| {
         let corners = subject.mesh.face(face).iter();
@@ -44,23 +44,33 @@ pub fn pick(subject: &Subject, request: u64, face: Option<usize>, vertex: Option
     }
 }
 
-type Lines = Vec<(String, String)>;
+type Lines = Vec<(String, Amount)>;
+
+/// Lengths of a mesh below this share of its size are rounding.
+const DUST: f64 = 1e-6;
+
+/// The diagonal of the mesh's box.
+fn size(mesh: &Mesh) -> f64 {
+    mesh.bounds().map_or(0.0, |(low, high)| low.distance(high))
+}
 
 fn of_vertex(subject: &Subject, vertex: usize, lines: &mut Lines) {
     let place = subject.mesh.positions()[vertex];
-    lines.push(("vertex".to_owned(), vertex.to_string()));
+    lines.push(("vertex".to_owned(), vertex.to_string().into()));
+    let size = size(&subject.mesh);
     for (axis, coordinate) in ["x", "y", "z"].into_iter().zip(place.to_array()) {
-        let text = amount(coordinate, Quantity::Length, subject.units);
-        lines.push((axis.to_owned(), text));
+        let told = amount_beside(coordinate, size, Quantity::Length, subject.units);
+        lines.push((axis.to_owned(), told));
     }
     values(subject, Domain::Vertex, vertex, lines);
 }
 
 fn of_face(subject: &Subject, face: usize, lines: &mut Lines) {
     let (mesh, units) = (&subject.mesh, subject.units);
-    let mut line = |label: &str, text: String| lines.push((label.to_owned(), text));
-    line("face", face.to_string());
-    line("corners", mesh.face(face).len().to_string());
+    let size = size(mesh);
+    let mut line = |label: &str, told: Amount| lines.push((label.to_owned(), told));
+    line("face", face.to_string().into());
+    line("corners", mesh.face(face).len().to_string().into());
     if let Some(single) = alone(mesh, face) {
         line(
             "area",
@@ -69,31 +79,38 @@ fn of_face(subject: &Subject, face: usize, lines: &mut Lines) {
         if let Ok(found) = planarity(&single, &Unmonitored)
             && let [flatness] = found.as_slice()
         {
+            let dust = flatness.plane.abs().max(DUST * size);
             line(
                 "off its plane by",
-                amount(flatness.plane, Quantity::Length, units),
+                amount_beside(flatness.plane, dust, Quantity::Length, units),
             );
         }
     }
     if let Some(material) = mesh.materials().get(face) {
-        line("material", material.name.clone());
+        line("material", material.name.clone().into());
     }
     if let Some(groups) = mesh.groups().get(face).filter(|groups| !groups.is_empty()) {
-        line("groups", groups.join(", "));
+        line("groups", groups.join(", ").into());
     }
     if let Some(object) = mesh.objects().get(face) {
-        line("object", object.clone());
+        line("object", object.clone().into());
     }
     values(subject, Domain::Face, face, lines);
 }
 
 /// The fields and attributes of an element.
 fn values(subject: &Subject, domain: Domain, element: usize, lines: &mut Lines) {
+    let size = size(&subject.mesh);
     for (label, field) in &subject.fields {
         if field.domain() == domain {
             let number = field.values()[element];
-            let text = amount(number, field.quantity(), subject.units);
-            lines.push((label.clone(), text));
+            let (quantity, units) = (field.quantity(), subject.units);
+            let told = if quantity == Quantity::Length {
+                amount_beside(number, number.abs().max(DUST * size), quantity, units)
+            } else {
+                amount(number, quantity, units)
+            };
+            lines.push((label.clone(), told));
         }
     }
     let plain = |number: f64| amount(number, Quantity::Number, subject.units);
@@ -101,13 +118,22 @@ fn values(subject: &Subject, domain: Domain, element: usize, lines: &mut Lines) 
         if attribute.domain() != domain {
             continue;
         }
-        let text = match attribute.values() {
-            AttributeValues::Integer(values) => values[element].to_string(),
+        let told = match attribute.values() {
+            AttributeValues::Integer(values) => values[element].to_string().into(),
             AttributeValues::Number(values) => plain(values[element]),
-            AttributeValues::Vector2(values) => values[element].to_array().map(plain).join(", "),
-            AttributeValues::Vector3(values) => values[element].to_array().map(plain).join(", "),
+            AttributeValues::Vector2(values) => several(values[element].to_array().map(plain)),
+            AttributeValues::Vector3(values) => several(values[element].to_array().map(plain)),
         };
-        lines.push((attribute.name().replace('_', " "), text));
+        lines.push((attribute.name().replace('_', " "), told));
+    }
+}
+
+/// Several numbers as one.
+fn several<const N: usize>(numbers: [Amount; N]) -> Amount {
+    let joined = |part: fn(&Amount) -> &str| numbers.each_ref().map(part).join(", ");
+    Amount {
+        text: joined(|number| &number.text),
+        exact: joined(|number| &number.exact),
     }
 }
 
@@ -137,12 +163,13 @@ pub fn measure(
 ) -> Option<Measured> {
     let (from, to) = (End::new(&subject.mesh, from)?, End::new(&subject.mesh, to)?);
     let (from, to) = shortest(&from, &to);
-    let length = |metres: f64| amount(metres, Quantity::Length, subject.units);
+    let distance = from.distance(to);
+    let length = |metres: f64| amount_beside(metres, distance, Quantity::Length, subject.units);
     Some(Measured {
         request,
         from: from.to_array(),
         to: to.to_array(),
-        distance: length(from.distance(to)),
+        distance: length(distance),
         delta: (to - from).to_array().map(length),
     })
 }
@@ -263,17 +290,18 @@ mod tests {
     #[test]
     fn distances_are_exact_and_in_the_units_of_the_file() {
         let subject = subject();
-        let told = |from, to| measure(&subject, 1, from, to).map(|found| found.distance);
+        let told = |from, to| measure(&subject, 1, from, to).map(|found| found.distance.text);
         let far = told(at(None, Some(1)), at(None, Some(4)));
         assert_eq!(far.as_deref(), Some("500 cm"));
         let faces = told(at(Some(0), None), at(Some(1), None));
         assert_eq!(faces.as_deref(), Some("500 cm"));
         let mixed = measure(&subject, 1, at(Some(0), None), at(None, Some(7))).unwrap();
         assert_eq!(
-            (mixed.distance.as_str(), mixed.from),
+            (mixed.distance.text.as_str(), mixed.from),
             ("500 cm", [1.0, 1.0, 0.0])
         );
-        assert_eq!(mixed.delta, ["400 cm", "0 cm", "300 cm"]);
+        let delta = mixed.delta.map(|along| along.text);
+        assert_eq!(delta, ["400 cm", "0 cm", "300 cm"]);
         assert_eq!(told(at(Some(2), None), at(Some(0), None)), None);
         assert_eq!(told(at(None, None), at(Some(0), None)), None);
     }
@@ -298,7 +326,7 @@ mod tests {
         let picked = pick(&subject(), 7, Some(1), Some(4));
         let line = |label: &str| {
             let found = picked.lines.iter().find(|(other, _)| other == label);
-            found.map(|(_, text)| text.as_str())
+            found.map(|(_, told)| told.text.as_str())
         };
         assert_eq!(
             (picked.request, picked.face, picked.vertex),

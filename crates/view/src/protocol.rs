@@ -444,6 +444,23 @@ pub struct ShownColumn {
     pub unit: String,
 }
 
+/// A number with its unit, as text.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Amount {
+    /// With the digits people can use.
+    pub text: String,
+    /// With all that are known.
+    pub exact: String,
+}
+
+impl From<String> for Amount {
+    /// What is no number, or has no more digits.
+    fn from(text: String) -> Self {
+        let exact = text.clone();
+        Self { text, exact }
+    }
+}
+
 /// What is known of a face or a vertex.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct Picked {
@@ -456,7 +473,7 @@ pub struct Picked {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub vertex: Option<usize>,
     /// Labels, and values with their units.
-    pub lines: Vec<(String, String)>,
+    pub lines: Vec<(String, Amount)>,
     /// The outline in metres.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub vertices: Option<Vec<[f64; 3]>>,
@@ -472,9 +489,9 @@ pub struct Measured {
     /// The other, in metres.
     pub to: [f64; 3],
     /// How far they are apart, with its unit.
-    pub distance: String,
+    pub distance: Amount,
     /// The same along each axis.
-    pub delta: [String; 3],
+    pub delta: [Amount; 3],
 }
 
 /// What is known of a node.

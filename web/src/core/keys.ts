@@ -44,6 +44,7 @@ export const KEYS = [
   { action: "undo", keys: ["Control+z"], title: "Take back the last edit made here", group: "Graph" },
   { action: "redo", keys: ["Control+Shift+z", "Control+y"], title: "Make it again", group: "Graph" },
   { action: "run", keys: ["Control+Enter"], title: "Run again", group: "Graph" },
+  { action: "share", keys: ["Shift+s"], title: "Share: link, offline page, phone", group: "Page" },
   { action: "search", keys: ["/"], title: "Search nodes and parameters", group: "Page" },
   { action: "commands", keys: ["Control+k"], title: "All commands", group: "Page" },
   { action: "drawer", keys: ["q"], title: "Drawer: closed, part, full", group: "Page" },

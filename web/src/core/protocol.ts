@@ -169,12 +169,14 @@ export type Shown = {
   report?: Named[];
 };
 
+/** A number with its unit: with the digits people can use, and with all. */
+export type Amount = { text: string; exact: string };
 export type Picked = {
   type: "picked";
   request: number;
   face?: number;
   vertex?: number;
-  lines: [string, string][];
+  lines: [string, Amount][];
   vertices?: Vec3[];
 };
 export type Measured = {
@@ -182,8 +184,8 @@ export type Measured = {
   request: number;
   from: Vec3;
   to: Vec3;
-  distance: string;
-  delta: [string, string, string];
+  distance: Amount;
+  delta: [Amount, Amount, Amount];
 };
 export type Described = {
   type: "described";
@@ -192,6 +194,12 @@ export type Described = {
   results: { name: string; summary: string }[];
   warnings: string[];
 };
+/** What this page may do, told to pages of other machines alone. */
+export type Access = { type: "access"; may_edit: boolean };
+/** An address that was given to another device. */
+export type Pairing = { id: number; url: string; connected: number };
+/** With whom the page is shared; told to pages of this machine that ask. */
+export type Shares = { type: "shares"; lan: { address: string; edit: boolean } | null; pairings: Pairing[] };
 export type Notice = { type: "notice"; level: "info" | "warning" | "error"; text: string };
 export type Study = { type: "study"; path: string; columns: string[]; rows: (number | string | null)[][] };
 
@@ -207,7 +215,9 @@ export type FromServer =
   | Measured
   | Described
   | Notice
-  | Study;
+  | Study
+  | Access
+  | Shares;
 
 /** One end of a measurement; a vertex is taken where both are named. */
 export type Place = { vertex?: number; face?: number };
@@ -219,6 +229,9 @@ export type ToServer =
   | { type: "undo" }
   | { type: "redo" }
   | { type: "show"; node: string; result?: string }
+  | { type: "shares" }
+  | { type: "pair" }
+  | { type: "unpair"; id: number }
   | { type: "cancel" }
   | { type: "run" }
   | ({ type: "pick"; request: number } & Place)

@@ -2,7 +2,8 @@
 // connection. Panels listen to the types they draw.
 import type { Document, FromServer, ToServer } from "./protocol.ts";
 
-export type Link = "connecting" | "open" | "retrying" | "refused";
+/** `offline` is a saved page: nobody will ever answer. */
+export type Link = "connecting" | "open" | "retrying" | "refused" | "offline";
 
 type Messages = { [T in FromServer["type"]]: Extract<FromServer, { type: T }> };
 type Listener<T> = (message: T) => void;
@@ -52,6 +53,11 @@ export class Store {
   private emit(type: string, value: unknown): void {
     for (const listener of this.listeners.get(type) ?? []) (listener as Listener<unknown>)(value);
   }
+}
+
+/** Whether this page may change nothing. */
+export function isReadOnly(store: Store): boolean {
+  return store.link === "offline" || store.get("hello")?.read_only === true || store.get("access")?.may_edit === false;
 }
 
 /** The unit of lengths in the file, metres before a file is known. */

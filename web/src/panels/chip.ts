@@ -1,5 +1,5 @@
 // The state chip: one short sentence that is always true of the picture.
-import type { Diagnostics, Hello, Status } from "../core/protocol.ts";
+import type { Diagnostics, Status } from "../core/protocol.ts";
 import type { Link } from "../core/store.ts";
 import { formatTime } from "../core/units.ts";
 
@@ -8,7 +8,7 @@ export type Chip = {
   text: string;
   kind: "good" | "busy" | "bad" | "waiting" | "idle";
   /** What a click offers: to stop the run, or to see the messages. */
-  act?: "cancel" | "messages" | "run";
+  act?: "cancel" | "messages" | "run" | undefined;
 };
 
 /** How long a run takes by now, and how long the last one took, in milliseconds. */
@@ -18,14 +18,15 @@ export type Clocked = { elapsed: number; last?: number | undefined };
 const SHORT_MS = 500;
 
 /** The chip for what is known; the connection says more than the last run. */
-export function chipOf(link: Link, hello: Hello | undefined, status: Status | undefined, diagnostics: Diagnostics | undefined, clocked?: Clocked): Chip {
+export function chipOf(link: Link, readOnly: boolean, status: Status | undefined, diagnostics: Diagnostics | undefined, clocked?: Clocked): Chip {
   if (link === "refused") {
     return { sign: "⊘", text: "Server restarted with a new address: open the one it printed", kind: "bad" };
   }
   if (link === "retrying") return { sign: "⊘", text: "Disconnected: retrying", kind: "bad" };
+  if (link === "offline") return { sign: "⎙", text: "Offline page: as it was when it was saved", kind: "idle" };
   if (link === "connecting" || !status) return { sign: "◌", text: "Connecting", kind: "idle" };
   const chip = chipOfStatus(status, diagnostics, clocked);
-  return hello?.read_only ? { ...chip, text: `${chip.text} · read only` } : chip;
+  return readOnly ? { ...chip, text: `${chip.text} · Read only (shared)`, act: chip.act === "messages" ? chip.act : undefined } : chip;
 }
 
 function chipOfStatus(status: Status, diagnostics: Diagnostics | undefined, clocked: Clocked | undefined): Chip {

@@ -1,6 +1,7 @@
 // The sheet of keys and the list of commands.
 import { element, setText } from "../core/dom.ts";
 import { type Action, GROUPS, KEYS, keyLabel } from "../core/keys.ts";
+import type { Amount } from "../core/protocol.ts";
 
 /** The sheet of all keys, made from their table. */
 export function helpDialog(): HTMLDialogElement {
@@ -109,6 +110,11 @@ export function commandEntries(act: (action: Action) => void): Entry[] {
   return KEYS.map(({ action, title, keys }) => ({ label: title, hint: keys.map(keyLabel).join(", "), run: () => act(action) }));
 }
 
+function valueNode(value: string | Amount): HTMLElement {
+  const { text, exact } = typeof value === "string" ? { text: value, exact: value } : value;
+  return element("dd", { title: exact === text ? undefined : exact }, text);
+}
+
 /** The readout of a pick or a measurement at the bottom of the picture. */
 export class Readout {
   readonly root = element("div", { class: "readout", role: "status", hidden: true });
@@ -119,11 +125,12 @@ export class Readout {
     this.root.append(this.title, this.list);
   }
 
-  show(title: string, lines: [string, string][]): void {
+  /** Numbers have their exact values as tooltips. */
+  show(title: string, lines: [string, string | Amount][]): void {
     setText(this.title, title);
     // Many lines stand in two columns: the model is not to be covered.
     this.list.classList.toggle("wide", lines.length > 7);
-    this.list.replaceChildren(...lines.flatMap(([label, value]) => [element("dt", {}, label), element("dd", {}, value)]));
+    this.list.replaceChildren(...lines.flatMap(([label, value]) => [element("dt", {}, label), valueNode(value)]));
     this.root.hidden = false;
   }
 

@@ -1,7 +1,7 @@
 // The parameters of the graph: slider, box, unit and reset for each.
 import { button, element, setHidden } from "../core/dom.ts";
 import type { Document, Parameter } from "../core/protocol.ts";
-import type { Store } from "../core/store.ts";
+import { isReadOnly, type Store } from "../core/store.ts";
 import type { Live } from "../core/throttle.ts";
 import { type Row, makeRow } from "./parameter_row.ts";
 
@@ -46,18 +46,20 @@ export class ParametersPanel {
     this.root.append(header, this.search, this.list);
     this.live = live.get;
     store.on("document", (document) => this.update(document));
-    store.on("hello", () => {
-      const document = store.get("document");
-      if (document) this.update(document);
-    });
-    store.onLink((link) => this.root.toggleAttribute("inert", link !== "open"));
+    for (const type of ["hello", "access"] as const) {
+      store.on(type, () => {
+        const document = store.get("document");
+        if (document) this.update(document);
+      });
+    }
+    store.onLink((link) => this.root.toggleAttribute("inert", link !== "open" && link !== "offline"));
   }
 
   private readonly live: () => Live;
 
   private update(document: Document): void {
     const { parameters } = document;
-    const readOnly = this.store.get("hello")?.read_only ?? false;
+    const readOnly = isReadOnly(this.store);
     this.undo.disabled = !document.can_undo || readOnly;
     this.redo.disabled = !document.can_redo || readOnly;
     const shape = JSON.stringify(parameters.map((p) => [p.name, p.kind, p.of, p.unit]));

@@ -2,7 +2,7 @@
 import { button, element, setText } from "../core/dom.ts";
 import { type Action, tooltip } from "../core/keys.ts";
 import type { Document, Shown, Status } from "../core/protocol.ts";
-import type { Store } from "../core/store.ts";
+import { isReadOnly, type Store } from "../core/store.ts";
 import { formatCount } from "../core/units.ts";
 import { chipOf } from "./chip.ts";
 
@@ -45,6 +45,7 @@ export class Topbar {
       this.counts,
       element("span", { class: "spring" }),
       element("label", { class: "field" }, element("span", {}, "Colour"), this.colours),
+      button("Share", tooltip("share"), () => events.act("share"), { class: "share-button" }),
       small("⌕", "search"),
       small("◐", "theme"),
       small("?", "help"),
@@ -59,7 +60,7 @@ export class Topbar {
       this.file.title = `${folder}/${file}`;
       document.title = `${file} · tessgraph`;
     });
-    for (const type of ["hello", "diagnostics"] as const) store.on(type, () => this.updateChip());
+    for (const type of ["hello", "access", "diagnostics"] as const) store.on(type, () => this.updateChip());
     store.on("status", (status) => {
       this.clock(status);
       this.updateChip();
@@ -88,7 +89,7 @@ export class Topbar {
   private updateChip(): void {
     const { store } = this;
     const clocked = this.started === undefined ? undefined : { elapsed: performance.now() - this.started, last: this.lastMs };
-    const chip = chipOf(store.link, store.get("hello"), store.get("status"), store.get("diagnostics"), clocked);
+    const chip = chipOf(store.link, isReadOnly(store), store.get("status"), store.get("diagnostics"), clocked);
     this.chip.className = `chip ${chip.kind}`;
     setText(this.chipSign, chip.sign);
     setText(this.chipText, chip.text);

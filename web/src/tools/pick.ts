@@ -1,5 +1,6 @@
 // Picking and measuring with the pointer. Ids come from the picture, every number
 // from the server, which has the model in double precision.
+import type { Selection } from "../core/link.ts";
 import type { Place, Vec3 } from "../core/protocol.ts";
 import type { Store } from "../core/store.ts";
 import { formatCount } from "../core/units.ts";
@@ -108,10 +109,18 @@ export class PickTool {
     this.onPanels();
   }
 
-  /** Brings back what was hidden on an earlier page. */
-  restorePanels(state: PanelsState | undefined): void {
+  /** Brings back what was hidden on an earlier page, and what was picked. */
+  restorePanels(state: PanelsState | undefined, selection?: Selection): void {
     this.panels.restore(state);
+    for (const panel of selection?.panels ?? []) this.panels.selected.add(panel);
+    this.picked = selection?.picked;
+    this.viewer.setPicked(this.picked && this.picked.level !== "panel" ? this.picked.face : undefined);
     this.drawPanels();
+  }
+
+  /** What is picked, for a link. */
+  get selection(): Selection {
+    return { panels: [...this.panels.selected], picked: this.picked };
   }
 
   private measureAt(hit: Hit): void {

@@ -15,13 +15,27 @@ type Held = { texture: ExternalTexture; handle: WebGLTexture; bytes: number };
 /** What was spent on the last loading, in milliseconds, and how much travelled. */
 export type LoadTimes = { fetch: number; upload: number; bytes: number; fetched: number };
 
+/** Where the bytes of a buffer come from. */
+export type BufferSource = (digest: Digest) => Promise<ArrayBuffer>;
+
+/** Buffers as `tessgraph view` serves them below its address. */
+export function fromServer(address: URL): BufferSource {
+  return async (digest) => {
+    // Past the browser's cache: a slider would fill it with models nobody sees again,
+    // and from this machine a buffer comes as fast as from a disk.
+    const response = await fetch(new URL(`buffer/${digest}`, address), { cache: "no-store" });
+    if (!response.ok) throw new Error(`buffer ${digest} is not to be had: ${response.status} ${response.statusText}`);
+    return response.arrayBuffer();
+  };
+}
+
 export class Buffers {
   private held = new Map<string, Held>();
   private gl: WebGL2RenderingContext;
 
   constructor(
     private readonly renderer: WebGLRenderer,
-    private readonly address: URL,
+    private readonly read: BufferSource,
   ) {
     this.gl = renderer.getContext() as WebGL2RenderingContext;
   }
@@ -43,7 +57,7 @@ export class Buffers {
   ): Promise<LoadTimes> {
     const missing = wanted.filter(({ digest, format }) => !this.held.has(key(digest, format)));
     const start = performance.now();
-    const fetched = await Promise.all(missing.map(({ digest }) => this.fetch(digest)));
+    const fetched = await Promise.all(missing.map(({ digest }) => this.read(digest)));
     const between = performance.now();
     let bytes = 0;
     missing.forEach(({ digest, format }, index) => {
@@ -79,14 +93,6 @@ export class Buffers {
   forget(): void {
     this.held.clear();
     this.gl = this.renderer.getContext() as WebGL2RenderingContext;
-  }
-
-  private async fetch(digest: Digest): Promise<ArrayBuffer> {
-    // Past the browser's cache: a slider would fill it with models nobody sees again,
-    // and from this machine a buffer comes as fast as from a disk.
-    const response = await fetch(new URL(`buffer/${digest}`, this.address), { cache: "no-store" });
-    if (!response.ok) throw new Error(`buffer ${digest} is not to be had: ${response.status} ${response.statusText}`);
-    return response.arrayBuffer();
   }
 
   private upload(content: ArrayBuffer, format: Format): Held {

@@ -19,7 +19,7 @@ import {
 import type { MapName } from "../core/colour.ts";
 import type { ColourRange } from "../core/legend.ts";
 import type { Shown, ShownField, Vec3 } from "../core/protocol.ts";
-import { Buffers, type LoadTimes } from "./buffers.ts";
+import { Buffers, type BufferSource, type LoadTimes } from "./buffers.ts";
 import { type CameraState, ViewCamera } from "./camera.ts";
 import { boxCorners, samplePoints } from "./fit.ts";
 import { Ground } from "./ground.ts";
@@ -72,7 +72,7 @@ export class Viewer {
   /** Throws where the browser gives no WebGL2. */
   constructor(
     private readonly host: HTMLElement,
-    address: URL,
+    source: BufferSource,
     smooth: () => boolean,
   ) {
     this.renderer = new WebGLRenderer({ antialias: true, powerPreference: "high-performance" });
@@ -82,7 +82,7 @@ export class Viewer {
     canvas.setAttribute("role", "img");
     canvas.setAttribute("aria-label", "The model; press ? for keys");
     host.append(canvas);
-    this.buffers = new Buffers(this.renderer, address);
+    this.buffers = new Buffers(this.renderer, source);
     this.camera = new ViewCamera(canvas, smooth);
     this.camera.pointUnder = (x, y) => this.hit(x, y)?.point;
     this.pickTarget = new WebGLRenderTarget(1, 1, {
