@@ -31,6 +31,7 @@ pub mod parallel;
 pub mod primitives;
 pub mod random;
 mod rebuild;
+pub mod section;
 pub mod subdivide;
 pub mod surface;
 pub mod target;
