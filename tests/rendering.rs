@@ -71,14 +71,32 @@ fn a_graph_its_meshes_and_a_mesh_file_are_drawn() {
         assert!(ink(&at.join(arguments[3])).iter().all(|share| *share > 0.1));
     }
     let read = |name: &str| bytes_of(&at.join(name));
-    assert_eq!(
-        read("a.png"),
-        first,
-        "an output is drawn as `render` draws it"
-    );
+    let (drawn, texts) = without_texts(&read("a.png"));
+    assert_eq!(drawn, first, "an output is drawn as `render` draws it");
+    // And says besides what it is of.
+    let texts = String::from_utf8(texts).expect("text");
+    assert!(texts.contains("Title\0\0\0\0\0g.ron · painted"), "{texts}");
+    assert!(texts.contains("Parameters\0\0\0\0\0top = "), "{texts}");
     // The file is in millimetres; that makes no difference to what fills the picture.
     let [one, other] = ["b.png", "c.png"].map(|name| ink(&at.join(name)));
     assert!({ one.iter().zip(other) }.all(|(one, other)| (one - other).abs() < 0.002));
+}
+
+/// A PNG without its texts, and the bodies of these.
+fn without_texts(png: &[u8]) -> (Vec<u8>, Vec<u8>) {
+    let (head, mut rest) = png.split_at(8);
+    let (mut picture, mut texts) = (head.to_vec(), Vec::new());
+    while let Some((length, _)) = rest.split_first_chunk::<4>() {
+        // Beside its body a chunk has its length, its name and a checksum.
+        let (chunk, next) = rest.split_at(12 + u32::from_be_bytes(*length) as usize);
+        if &chunk[4..8] == b"iTXt" {
+            texts.extend_from_slice(&chunk[8..chunk.len() - 4]);
+        } else {
+            picture.extend_from_slice(chunk);
+        }
+        rest = next;
+    }
+    (picture, texts)
 }
 
 #[test]

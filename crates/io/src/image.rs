@@ -66,18 +66,24 @@ pub fn read_luminance(bytes: &[u8], file: &str) -> Result<Luminance, IoError> {
 }
 
 /// Writes a PNG of 8 bits: `pixels` holds red, green and blue in sRGB, row by row
-/// from the top.
+/// from the top. `texts` say what it is of: each a keyword such as "Title", of 1
+/// to 79 Latin letters, and a text, kept as UTF-8 (chunk iTXt of the standard).
 ///
 /// Cost: O(pixels).
 ///
 /// # Panics
-/// If there are not three bytes for each pixel, or no pixels.
-pub fn write_png([width, height]: [u32; 2], pixels: &[u8]) -> Vec<u8> {
+/// If there are not three bytes for each pixel, or no pixels, or a keyword is none.
+pub fn write_png([width, height]: [u32; 2], pixels: &[u8], texts: &[(&str, String)]) -> Vec<u8> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, width, height);
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
+    for (keyword, text) in texts {
+        encoder
+            .add_itxt_chunk((*keyword).to_owned(), text.clone())
+            .expect("a keyword");
+    }
     let mut writer = encoder.write_header().expect("a size that is not zero");
     writer
         .write_image_data(pixels)
@@ -139,6 +145,21 @@ mod tests {
             .write_image_data(data)
             .unwrap();
         bytes
+    }
+
+    #[test]
+    fn pictures_carry_texts_of_every_script() {
+        let texts = [
+            ("Title", "façade.ron".to_owned()),
+            ("Parameters", "höhe = 3 m".to_owned()),
+        ];
+        let bytes = write_png([1, 1], &[1, 2, 3], &texts);
+        let reader = png::Decoder::new(Cursor::new(bytes)).read_info().unwrap();
+        let chunks = &reader.info().utf8_text;
+        let read = chunks
+            .iter()
+            .map(|chunk| (chunk.keyword.as_str(), chunk.get_text().unwrap()));
+        assert!(read.eq(texts));
     }
 
     #[test]

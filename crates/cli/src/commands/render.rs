@@ -1,6 +1,6 @@
 //! `render`: a picture of a mesh, without a window.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
@@ -89,6 +89,8 @@ fn range(text: &str) -> Result<(f64, f64), String> {
 struct Subject {
     mesh: Arc<Mesh>,
     field: Option<Painted>,
+    /// What it is and what it was made from, for the picture to carry.
+    texts: Vec<(&'static str, String)>,
 }
 
 /// A field and how its numbers are told.
@@ -143,7 +145,7 @@ pub(crate) fn render(args: &RenderArgs, cx: &mut Context<'_, '_>) -> u8 {
         }
         Err(error) => return cx.fail(FAILED, "not_drawn", error.to_string(), None),
     };
-    let bytes = write_png(picture.size(), picture.pixels());
+    let bytes = write_png(picture.size(), picture.pixels(), &subject.texts);
     let shown = args.output.to_string_lossy();
     if let Err(error) = write_if_changed(&args.output, &bytes) {
         let message = format!("cannot write {}: {error}", printable(&shown));
@@ -166,7 +168,8 @@ fn of_mesh(args: &RenderArgs, cx: &mut Context<'_, '_>) -> Result<Subject, u8> {
         }
         None => None,
     };
-    Ok(Subject { mesh, field })
+    let texts = texts(&args.file, None, None);
+    Ok(Subject { mesh, field, texts })
 }
 
 fn of_graph(args: &RenderArgs, cx: &mut Context<'_, '_>) -> Result<Subject, u8> {
@@ -205,7 +208,36 @@ fn of_graph(args: &RenderArgs, cx: &mut Context<'_, '_>) -> Result<Subject, u8> 
         (None, _) => None,
     };
     let mesh = Arc::clone(mesh);
-    Ok(Subject { mesh, field })
+    let texts = texts(&args.file, Some(&file.plan), Some(shown));
+    Ok(Subject { mesh, field, texts })
+}
+
+/// What a picture says of itself: the program, the file and the result, and every
+/// parameter as written, in the file's units, a line each.
+fn texts(
+    file: &Path,
+    plan: Option<&Plan>,
+    shown: Option<ResultRef>,
+) -> Vec<(&'static str, String)> {
+    let name = file.file_name().unwrap_or_default().to_string_lossy();
+    let node = plan
+        .zip(shown)
+        .map(|(plan, shown)| &plan.nodes[shown.node].name);
+    let title = node.map_or_else(|| name.to_string(), |node| format!("{name} · {node}"));
+    let program = format!("tessgraph {}", env!("CARGO_PKG_VERSION"));
+    let mut texts = vec![("Software", program), ("Title", title)];
+    if let Some(plan) = plan.filter(|plan| !plan.parameters.is_empty()) {
+        let lines = plan.parameters.iter().map(|parameter| {
+            let value = match &parameter.value {
+                // With all digits, so that the picture can be made again.
+                Value::Number(number) => number.to_string(),
+                other => other.summary(),
+            };
+            format!("{} = {value}", parameter.name)
+        });
+        texts.push(("Parameters", lines.collect::<Vec<_>>().join("\n")));
+    }
+    texts
 }
 
 /// Computes what is wanted, and shows what is wrong.

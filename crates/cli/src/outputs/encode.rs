@@ -149,7 +149,7 @@ pub(super) fn made_from(plan: &Plan, target: &Target, value: Digest, provenance:
 fn picture(mesh: &Mesh) -> Result<Vec<u8>, Failure> {
     let picture = draw(mesh, &DrawOptions::default(), &UntilInterrupt);
     let picture = picture.map_err(|error| Failure::Other(error.to_string()))?;
-    Ok(write_png(picture.size(), picture.pixels()))
+    Ok(write_png(picture.size(), picture.pixels(), &[]))
 }
 
 fn encode_mesh<'a>(
