@@ -113,6 +113,33 @@ impl Server {
         format!("127.0.0.1:{}", self.address.port())
     }
 
+    /// The same server by another address and secret, as a paired device sees it;
+    /// what comes back for a path below the secret.
+    pub(crate) fn get_at(host: &str, token: &str, name: &str) -> Answer {
+        let mut stream = TcpStream::connect(host).expect("a server");
+        stream.set_read_timeout(Some(PATIENCE)).expect("a socket");
+        let head =
+            format!("GET /{token}/{name} HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\n\r\n");
+        let _ = stream.write_all(head.as_bytes());
+        let mut bytes = Vec::new();
+        let _ = stream.read_to_end(&mut bytes);
+        answer(&bytes).expect("an answer")
+    }
+
+    /// Opens the page's socket at an address that a device was given.
+    pub(crate) fn open_at(url: &str) -> Page {
+        let host = url
+            .trim_start_matches("http://")
+            .split('/')
+            .next()
+            .expect("a host");
+        let stream = TcpStream::connect(host).expect("a server");
+        stream.set_read_timeout(Some(PATIENCE)).expect("a socket");
+        let url = url.replace("http://", "ws://") + "socket";
+        let (socket, _) = tungstenite::client(url, stream).expect("a socket");
+        Page { socket }
+    }
+
     /// Opens the page's socket.
     pub(crate) fn open(&self) -> Page {
         let url = format!("ws://{}/{}/socket", self.host(), self.token);

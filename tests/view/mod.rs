@@ -3,6 +3,7 @@
 mod editing;
 mod following;
 mod latency;
+mod sharing;
 mod showing;
 
 use std::path::Path;

@@ -80,6 +80,12 @@ impl Buffers {
         Some(bytes)
     }
 
+    /// A finished picture, named by its content.
+    pub fn picture(&self, bytes: Vec<u8>) -> BufferName {
+        let source = source("picture", &[Digest::of(&bytes)]).finish();
+        self.made(source, || bytes.into()).0
+    }
+
     /// A buffer that is made from what `source` is the digest of, named by its
     /// own content: equal ones have one name, whatever they were made from.
     pub(crate) fn made(&self, source: Digest, make: impl FnOnce() -> Bytes) -> (BufferName, usize) {

@@ -49,9 +49,14 @@ fn slot(message: &ToPage) -> Option<usize> {
         ToPage::Checks { .. } => 5,
         ToPage::Shown(_) => 6,
         ToPage::Study(_) => 7,
-        ToPage::Picked(_) | ToPage::Measured(_) | ToPage::Described(_) | ToPage::Notice(_) => {
-            return None;
-        }
+        ToPage::Picked(_)
+        | ToPage::Measured(_)
+        | ToPage::Sectioned(_)
+        | ToPage::Rendered { .. }
+        | ToPage::Described(_)
+        | ToPage::Notice(_)
+        | ToPage::Access { .. }
+        | ToPage::Shares(_) => return None,
     })
 }
 

@@ -13,10 +13,11 @@ mod hub;
 pub mod outcomes;
 pub mod pick;
 pub mod protocol;
+pub mod section;
 mod server;
 pub mod shown;
 mod values;
 
 pub use buffers::Buffers;
 pub use hub::Hub;
-pub use server::{Address, Asking, DEFAULT_PORT, Desk, Reply, Server, token};
+pub use server::{Address, Asking, DEFAULT_PORT, Desk, Network, Reply, Server, token};

@@ -182,6 +182,9 @@ enum End {
 
 impl End {
     fn new(mesh: &Mesh, end: MeasureEnd) -> Option<Self> {
+        if let Some(meant) = end.cut {
+            return crate::section::place(mesh, meant).map(Self::Place);
+        }
         if let Some(vertex) = end.vertex {
             return mesh.positions().get(vertex).copied().map(Self::Place);
         }
@@ -284,7 +287,11 @@ mod tests {
     }
 
     fn at(face: Option<usize>, vertex: Option<usize>) -> MeasureEnd {
-        MeasureEnd { vertex, face }
+        MeasureEnd {
+            vertex,
+            face,
+            cut: None,
+        }
     }
 
     #[test]

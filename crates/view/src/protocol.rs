@@ -64,12 +64,57 @@ pub enum ToPage {
     Picked(Picked),
     /// The answer to [`FromPage::Measure`].
     Measured(Measured),
+    /// The answer to [`FromPage::Section`].
+    Sectioned(Sectioned),
+    /// The answer to [`FromPage::Render`].
+    Rendered {
+        /// The number of the request.
+        request: u64,
+        /// The picture, a PNG.
+        picture: BufferName,
+    },
     /// The answer to [`FromPage::Describe`].
     Described(Described),
     /// Something people should know.
     Notice(Notice),
     /// The table of a study of the graph.
     Study(Study),
+    /// What a page on another machine may do.
+    Access {
+        /// Whether it may change values.
+        may_edit: bool,
+    },
+    /// With whom the page is shared: the answer to [`Sharing`].
+    Shares(Shares),
+}
+
+/// With whom the page is shared.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize)]
+pub struct Shares {
+    /// Where devices of the network find it, if they may.
+    pub lan: Option<Lan>,
+    /// The devices.
+    pub pairings: Vec<Pairing>,
+}
+
+/// Where devices of the network find the page.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Lan {
+    /// The address, without a secret.
+    pub address: String,
+    /// Whether they may change values.
+    pub edit: bool,
+}
+
+/// A device that was given an address.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Pairing {
+    /// Its number.
+    pub id: u32,
+    /// Its address, with its secret.
+    pub url: String,
+    /// Pages that are open there.
+    pub connected: usize,
 }
 
 /// Who speaks.
@@ -494,6 +539,32 @@ pub struct Measured {
     pub delta: [Amount; 3],
 }
 
+/// The cut of the mesh that is shown.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Sectioned {
+    /// The number of the request.
+    pub request: u64,
+    /// What the segments are relative to, in metres.
+    pub origin: [f64; 3],
+    /// Both ends of each segment, six `f32` in metres; those of closed outlines
+    /// first, each with the body to its left, seen against the plane's normal.
+    pub segments: BufferName,
+    /// The panel of each segment, `u32`.
+    pub panels: BufferName,
+    /// How many segments there are.
+    pub count: usize,
+    /// How many of them are of closed outlines.
+    pub closed_count: usize,
+    /// Outlines that come back to where they began.
+    pub closed: usize,
+    /// Outlines that end somewhere: the body is open there.
+    pub open: usize,
+    /// Length of all outlines.
+    pub length: Amount,
+    /// Area within the closed ones.
+    pub area: Amount,
+}
+
 /// What is known of a node.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Described {
@@ -546,6 +617,9 @@ pub struct Study {
     pub columns: Vec<String>,
     /// Its rows.
     pub rows: Vec<Vec<Option<Value>>>,
+    /// The number of the picture of each row that has one; none at all if empty.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub pictures: Vec<Option<usize>>,
 }
 
 /// What the page asks for.
@@ -604,6 +678,22 @@ pub enum FromPage {
         /// The other.
         to: MeasureEnd,
     },
+    /// Cut what is shown.
+    Section {
+        /// A number for the answer.
+        request: u64,
+        /// Where.
+        plane: PlaneAsked,
+    },
+    /// Draw what is shown, for a browser that cannot.
+    Render {
+        /// A number for the answer.
+        request: u64,
+        /// Width and height in pixels.
+        size: [u32; 2],
+        /// From the model towards the eye; not zero.
+        towards: [f64; 3],
+    },
     /// Tell what is known of a node.
     Describe {
         /// The node.
@@ -611,13 +701,61 @@ pub enum FromPage {
     },
 }
 
-/// An end of a measured distance.
+impl FromPage {
+    /// Whether it changes the graph, what it runs with, or the run at work.
+    pub fn is_change(&self) -> bool {
+        use FromPage::{Cancel, Redo, Reset, Run, Set, Undo, Write};
+        matches!(
+            self,
+            Set { .. } | Write { .. } | Reset { .. } | Undo | Redo | Cancel | Run
+        )
+    }
+}
+
+/// What the owner's page asks about sharing; the server sees to it itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(tag = "type", rename_all = "snake_case")]
+pub enum Sharing {
+    /// With whom it is shared.
+    Shares,
+    /// Give another device an address.
+    Pair,
+    /// Take an address back.
+    Unpair {
+        /// The device's number.
+        id: u32,
+    },
+}
+
+/// An end of a measured distance.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Deserialize)]
 pub struct MeasureEnd {
     /// A vertex.
     pub vertex: Option<usize>,
     /// Or a face.
     pub face: Option<usize>,
+    /// Or a place of a cut.
+    pub cut: Option<CutPlace>,
+}
+
+/// A plane.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+pub struct PlaneAsked {
+    /// Its direction; need not be of length one.
+    pub normal: [f64; 3],
+    /// Its distance from the origin along that, in metres.
+    pub at: f64,
+}
+
+/// The place of a cut that is closest to another.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+pub struct CutPlace {
+    /// Where is cut.
+    pub plane: PlaneAsked,
+    /// Near this place, in metres.
+    pub near: [f64; 3],
+    /// Corners within this many metres are taken before sides.
+    pub snap: f64,
 }
 
 #[cfg(test)]

@@ -15,24 +15,46 @@ use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 use subtle::ConstantTimeEq as _;
 
+use super::pairings::Pairings;
+
 /// What a request must have.
 pub(super) struct Guard {
     address: SocketAddr,
-    token: String,
+    keys: Keys,
+}
+
+/// The secrets that are let in.
+pub(super) enum Keys {
+    /// That of the owner, who is on this machine.
+    Owner(String),
+    /// Those of devices in the network.
+    Paired(Arc<Pairings>),
+}
+
+/// Who asks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Caller {
+    /// Whoever has the address that was printed; may change values if it is of
+    /// this machine.
+    Owner {
+        /// Whether values may be changed.
+        may_edit: bool,
+    },
+    /// A device of that number.
+    Device(u32),
 }
 
 impl Guard {
-    pub(super) fn new(address: SocketAddr, token: &str) -> Self {
-        let token = token.to_owned();
-        Self { address, token }
+    pub(super) fn new(address: SocketAddr, keys: Keys) -> Self {
+        Self { address, keys }
     }
 
-    /// Why a request is refused, or the host it names.
+    /// Why a request is refused, or the host it names and who asks.
     ///
     /// A page of another site can make a browser send requests here, under any
     /// name that leads here, but cannot keep the browser from saying so in the
     /// headers `Host` and `Origin`.
-    fn judge(&self, request: &Request) -> Result<String, StatusCode> {
+    fn judge(&self, request: &Request) -> Result<(String, Caller), StatusCode> {
         let Some(host) = only(request.headers(), HOST).filter(|host| self.is_own(host)) else {
             return Err(StatusCode::FORBIDDEN);
         };
@@ -54,15 +76,28 @@ impl Guard {
             return Err(StatusCode::NOT_FOUND);
         }
         let given = path[1..].split('/').next().unwrap_or_default();
-        if bool::from(given.as_bytes().ct_eq(self.token.as_bytes())) {
-            Ok(host.to_owned())
-        } else {
-            Err(StatusCode::UNAUTHORIZED)
+        let caller = self.caller(given).ok_or(StatusCode::UNAUTHORIZED)?;
+        Ok((host.to_owned(), caller))
+    }
+
+    /// Who knows such a secret.
+    fn caller(&self, given: &str) -> Option<Caller> {
+        match &self.keys {
+            Keys::Owner(token) => {
+                let may_edit = self.address.ip().is_loopback();
+                bool::from(given.as_bytes().ct_eq(token.as_bytes()))
+                    .then_some(Caller::Owner { may_edit })
+            }
+            Keys::Paired(pairings) => pairings.find(given).map(Caller::Device),
         }
     }
 
-    /// Whether a host is this machine under a number, or "localhost".
+    /// Whether a host is this machine under a number, or "localhost"; for devices
+    /// of the network the one address they were given.
     fn is_own(&self, host: &str) -> bool {
+        if matches!(self.keys, Keys::Paired(_)) {
+            return host == self.address.to_string();
+        }
         let Some((name, port)) = host.rsplit_once(':') else {
             return false;
         };
@@ -93,11 +128,14 @@ fn only(headers: &HeaderMap, name: HeaderName) -> Option<&str> {
 /// Refuses what [`Guard`] refuses, and tells the browser what the page may do.
 pub(super) async fn check(
     State(guard): State<Arc<Guard>>,
-    request: Request<Body>,
+    mut request: Request<Body>,
     next: Next,
 ) -> Response {
     let (mut response, host) = match guard.judge(&request) {
-        Ok(host) => (next.run(request).await, host),
+        Ok((host, caller)) => {
+            request.extensions_mut().insert(caller);
+            (next.run(request).await, host)
+        }
         Err(status) => (status.into_response(), String::new()),
     };
     let policy = format!(
@@ -129,7 +167,7 @@ mod tests {
     use super::*;
 
     fn guard(address: &str) -> Guard {
-        Guard::new(address.parse().unwrap(), &"a".repeat(32))
+        Guard::new(address.parse().unwrap(), Keys::Owner("a".repeat(32)))
     }
 
     fn judge(guard: &Guard, path: &str, headers: &[(&str, &str)]) -> Result<String, u16> {
@@ -138,7 +176,47 @@ mod tests {
             request = request.header(*name, *value);
         }
         let request = request.body(Body::empty()).unwrap();
-        guard.judge(&request).map_err(|status| status.as_u16())
+        let judged = guard.judge(&request);
+        judged
+            .map(|(host, _)| host)
+            .map_err(|status| status.as_u16())
+    }
+
+    #[test]
+    fn devices_come_by_their_own_address_and_secret_alone() {
+        let address = "192.168.1.7:8137".parse().unwrap();
+        let pairings = Arc::new(Pairings::new(address, false));
+        pairings.pair().unwrap();
+        let url = pairings.shares().pairings[0].url.clone();
+        let path = url
+            .strip_prefix("http://192.168.1.7:8137")
+            .unwrap()
+            .to_owned();
+        let guard = Guard::new(address, Keys::Paired(Arc::clone(&pairings)));
+        let host = ("host", "192.168.1.7:8137");
+        assert_eq!(
+            guard.caller(path.trim_matches('/')),
+            Some(Caller::Device(1))
+        );
+        assert!(judge(&guard, &path, &[host]).is_ok());
+        assert_eq!(judge(&guard, "/", &[host]), Err(401));
+        for other in [
+            "127.0.0.1:8137",
+            "localhost:8137",
+            "192.168.1.8:8137",
+            "192.168.1.7:80",
+            "[::1]:8137",
+        ] {
+            assert_eq!(
+                judge(&guard, &path, &[("host", other)]),
+                Err(403),
+                "{other}"
+            );
+        }
+        let origin = ("origin", "http://192.168.1.8:8137");
+        assert_eq!(judge(&guard, &path, &[host, origin]), Err(403));
+        pairings.unpair(1);
+        assert_eq!(judge(&guard, &path, &[host]), Err(401));
     }
 
     #[test]

@@ -2,7 +2,9 @@
 
 mod connections;
 mod guard;
+mod offline;
 mod pages;
+mod pairings;
 mod socket;
 
 use std::io;
@@ -20,6 +22,8 @@ pub use socket::{Asking, Reply};
 
 use crate::buffers::Buffers;
 use crate::hub::Hub;
+use guard::{Caller, Guard, Keys};
+use pairings::Pairings;
 
 /// The port unless another is asked for.
 pub const DEFAULT_PORT: u16 = 8137;
@@ -35,6 +39,18 @@ pub struct Address {
     /// The port; if none is asked for, the first free one from
     /// [`DEFAULT_PORT`] on.
     pub port: Option<u16>,
+    /// Where devices of the network find the page too, at the same port.
+    pub network: Option<Network>,
+}
+
+/// How devices of the network are let in: each by a secret of its own that the
+/// owner's page hands out.
+#[derive(Debug, Clone, Copy)]
+pub struct Network {
+    /// This machine's address in the network.
+    pub host: IpAddr,
+    /// Whether devices may change values.
+    pub may_edit: bool,
 }
 
 /// What the server gives out, and whom it asks.
@@ -47,11 +63,34 @@ pub struct Desk {
     /// Is asked what a page asks for. Called on the server's own thread, it must
     /// only note the request down; `false` says that there are too many.
     pub ask: Arc<dyn Fn(Asking) -> bool + Send + Sync>,
+    /// Gives the picture of a number that a study's message has named, a PNG.
+    pub picture: Arc<dyn Fn(usize) -> Option<Vec<u8>> + Send + Sync>,
+}
+
+/// What requests are answered from.
+#[derive(Clone)]
+struct Room {
+    desk: Desk,
+    pairings: Option<Arc<Pairings>>,
+}
+
+impl Room {
+    /// Whether somebody may change values.
+    fn may_edit(&self, caller: Caller) -> bool {
+        match caller {
+            Caller::Owner { may_edit } => may_edit,
+            Caller::Device(_) => {
+                let pairings = self.pairings.as_ref();
+                pairings.is_some_and(|pairings| pairings.may_edit)
+            }
+        }
+    }
 }
 
 /// A running server; it ends when this is dropped.
 pub struct Server {
     address: SocketAddr,
+    network: Option<SocketAddr>,
     token: String,
     stop: Option<oneshot::Sender<()>>,
     thread: Option<JoinHandle<()>>,
@@ -64,19 +103,30 @@ impl Server {
     /// # Errors
     /// When the port is taken, and whatever else the system says.
     pub fn start(address: Address, token: String, desk: Desk) -> io::Result<Self> {
-        let listener = listen(address)?;
-        listener.set_nonblocking(true)?;
+        let (listener, outer) = listen(address)?;
+        let network = address.network;
         let address = listener.local_addr()?;
-        let app = app(address, &token, desk);
+        let outside = outer.as_ref().map(TcpListener::local_addr).transpose()?;
+        let pairings = network.zip(outside).map(|(network, address)| {
+            let pairings = Pairings::new(address, network.may_edit);
+            Arc::new(pairings)
+        });
+        let room = Room { desk, pairings };
+        let outer = outer.zip(outside).zip(room.pairings.clone());
+        let outer = outer.map(|((listener, address), pairings)| {
+            let guard = Guard::new(address, Keys::Paired(pairings));
+            (listener, app(guard, room.clone()))
+        });
+        let app = app(Guard::new(address, Keys::Owner(token.clone())), room);
         let runtime = tokio::runtime::Builder::new_current_thread()
             .enable_all()
             .build()?;
         let (stop, stopped) = oneshot::channel();
         let serve = move || {
             let serving = runtime.block_on(async {
-                let listener = tokio::net::TcpListener::from_std(listener)?;
                 tokio::select! {
-                    () = connections::accept(&listener, app) => {}
+                    served = accept(listener, app) => served?,
+                    served = accept_from_network(outer) => served?,
                     // Also when the sender is gone.
                     _ = stopped => {}
                 }
@@ -92,6 +142,7 @@ impl Server {
             .spawn(serve)?;
         Ok(Self {
             address,
+            network: outside,
             token,
             stop: Some(stop),
             thread: Some(thread),
@@ -106,6 +157,11 @@ impl Server {
             address.set_ip(Ipv4Addr::LOCALHOST.into());
         }
         format!("http://{address}/{}/", self.token)
+    }
+
+    /// Where devices of the network find it, without a secret.
+    pub fn network(&self) -> Option<SocketAddr> {
+        self.network
     }
 
     /// Where it listens.
@@ -124,20 +180,47 @@ impl Drop for Server {
     }
 }
 
-/// The first port that is free, or the one that is asked for.
-fn listen(address: Address) -> io::Result<TcpListener> {
+async fn accept(listener: TcpListener, app: Router) -> io::Result<()> {
+    let listener = tokio::net::TcpListener::from_std(listener)?;
+    connections::accept(&listener, app).await;
+    Ok(())
+}
+
+/// For ever, also where nobody comes from the network.
+async fn accept_from_network(outer: Option<(TcpListener, Router)>) -> io::Result<()> {
+    match outer {
+        Some((listener, app)) => accept(listener, app).await,
+        None => std::future::pending().await,
+    }
+}
+
+/// Listens at the first port that is free, or the one that is asked for; for the
+/// network at the same.
+fn listen(address: Address) -> io::Result<(TcpListener, Option<TcpListener>)> {
     let ports: RangeInclusive<u16> = match address.port {
         Some(port) => port..=port,
         None => DEFAULT_PORT..=DEFAULT_PORT + MORE_PORTS,
     };
     let mut failure = io::ErrorKind::AddrInUse.into();
     for port in ports {
-        match TcpListener::bind((address.host, port)) {
+        match listen_at(address, port) {
             Err(error) if error.kind() == io::ErrorKind::AddrInUse => failure = error,
             result => return result,
         }
     }
     Err(failure)
+}
+
+fn listen_at(address: Address, port: u16) -> io::Result<(TcpListener, Option<TcpListener>)> {
+    let listener = TcpListener::bind((address.host, port))?;
+    listener.set_nonblocking(true)?;
+    let port = listener.local_addr()?.port();
+    let outer = address.network.map(|network| -> io::Result<TcpListener> {
+        let outer = TcpListener::bind((network.host, port))?;
+        outer.set_nonblocking(true)?;
+        Ok(outer)
+    });
+    Ok((listener, outer.transpose()?))
 }
 
 /// 128 random bits as 32 hexadecimal digits.
@@ -150,14 +233,16 @@ pub fn token() -> io::Result<String> {
     Ok(bits.iter().map(|byte| format!("{byte:02x}")).collect())
 }
 
-fn app(address: SocketAddr, token: &str, desk: Desk) -> Router {
-    let guard = Arc::new(guard::Guard::new(address, token));
+fn app(guard: Guard, room: Room) -> Router {
+    let guard = Arc::new(guard);
     Router::new()
         .route("/{token}/", get(pages::index))
         .route("/{token}/app.js", get(pages::script))
         .route("/{token}/app.css", get(pages::style))
+        .route("/{token}/offline.html", get(offline::offline))
+        .route("/{token}/picture/{number}", get(pages::picture))
         .route("/{token}/buffer/{name}", get(pages::buffer))
         .route("/{token}/socket", get(socket::socket))
-        .with_state(desk)
+        .with_state(room)
         .layer(from_fn_with_state(guard, guard::check))
 }

@@ -1,4 +1,5 @@
 //! What is given out: three files that are part of the program, and buffers.
+//! The page that needs no server is in `offline`.
 
 use axum::body::Body;
 use axum::extract::{Path, State};
@@ -7,11 +8,11 @@ use axum::http::header::{CACHE_CONTROL, CONTENT_TYPE};
 use axum::response::{IntoResponse, Response};
 use tessgraph_geometry::digest::Digest;
 
-use super::Desk;
+use super::Room;
 
 const INDEX: &[u8] = include_bytes!("../../page/index.html");
-const SCRIPT: &[u8] = include_bytes!("../../page/app.js");
-const STYLE: &[u8] = include_bytes!("../../page/app.css");
+pub(super) const SCRIPT: &[u8] = include_bytes!("../../page/app.js");
+pub(super) const STYLE: &[u8] = include_bytes!("../../page/app.css");
 
 pub(super) async fn index() -> Response {
     part("text/html; charset=utf-8", INDEX)
@@ -27,20 +28,21 @@ pub(super) async fn style() -> Response {
 
 /// A file of the page. Another version of the program may have another one at
 /// the same address.
-fn part(kind: &'static str, content: &'static [u8]) -> Response {
+fn part(kind: &'static str, content: impl Into<Body>) -> Response {
+    let content: Body = content.into();
     ([(CONTENT_TYPE, kind), (CACHE_CONTROL, "no-cache")], content).into_response()
 }
 
 /// A buffer that a message has named.
 pub(super) async fn buffer(
-    State(desk): State<Desk>,
+    State(room): State<Room>,
     Path((_, name)): Path<(String, String)>,
 ) -> Response {
     let Some(name) = digest(&name) else {
         return StatusCode::NOT_FOUND.into_response();
     };
     // Making one may take a while, and this thread has others to serve.
-    let found = tokio::task::spawn_blocking(move || desk.buffers.get(name)).await;
+    let found = tokio::task::spawn_blocking(move || room.desk.buffers.get(name)).await;
     match found {
         Ok(Some(bytes)) => {
             let kind = (CONTENT_TYPE, "application/octet-stream");
@@ -52,8 +54,25 @@ pub(super) async fn buffer(
     }
 }
 
+/// A picture of a study, by the number that its message gave it.
+pub(super) async fn picture(
+    State(room): State<Room>,
+    Path((_, number)): Path<(String, String)>,
+) -> Response {
+    let is_plain = !number.is_empty() && number.bytes().all(|byte| byte.is_ascii_digit());
+    let Some(number) = number.parse().ok().filter(|_| is_plain) else {
+        return StatusCode::NOT_FOUND.into_response();
+    };
+    let found = tokio::task::spawn_blocking(move || (room.desk.picture)(number)).await;
+    match found {
+        Ok(Some(bytes)) => part("image/png", bytes),
+        Ok(None) => StatusCode::NOT_FOUND.into_response(),
+        Err(_) => StatusCode::INTERNAL_SERVER_ERROR.into_response(),
+    }
+}
+
 /// The digest that 32 lower-case hexadecimal digits stand for.
-fn digest(name: &str) -> Option<Digest> {
+pub(super) fn digest(name: &str) -> Option<Digest> {
     let is_digit = |byte: u8| byte.is_ascii_digit() || (b'a'..=b'f').contains(&byte);
     if name.len() != 32 || !name.bytes().all(is_digit) {
         return None;

@@ -4,14 +4,17 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::time::Duration;
 
+use axum::Extension;
 use axum::extract::State;
 use axum::extract::ws::{Message, Utf8Bytes, WebSocket, WebSocketUpgrade};
 use axum::response::Response;
 use tokio::sync::mpsc;
 
-use super::Desk;
+use super::Room;
+use super::guard::Caller;
+use super::pairings::Visit;
 use crate::hub::{Hub, text};
-use crate::protocol::{FromPage, Level, Notice, ToPage};
+use crate::protocol::{FromPage, Level, Notice, Shares, Sharing, ToPage};
 
 /// Requests are some hundred bytes.
 const MOST_BYTES: usize = 64 << 10;
@@ -43,22 +46,47 @@ impl Reply {
     }
 }
 
-pub(super) async fn socket(State(desk): State<Desk>, upgrade: WebSocketUpgrade) -> Response {
+pub(super) async fn socket(
+    State(room): State<Room>,
+    Extension(caller): Extension<Caller>,
+    upgrade: WebSocketUpgrade,
+) -> Response {
     upgrade
         .max_message_size(MOST_BYTES)
         .max_frame_size(MOST_BYTES)
-        .on_upgrade(|socket| async move {
-            let _ = talk(socket, desk).await;
+        .on_upgrade(move |socket| async move {
+            let _ = attend(socket, room, caller).await;
         })
 }
 
+/// A page, as long as its address holds.
+async fn attend(mut socket: WebSocket, room: Room, caller: Caller) -> Result<(), axum::Error> {
+    let Caller::Device(id) = caller else {
+        return talk(socket, room, caller).await;
+    };
+    let Some(mut visit) = room
+        .pairings
+        .as_ref()
+        .and_then(|pairings| pairings.visit(id))
+    else {
+        return Ok(());
+    };
+    let may_edit = room.may_edit(caller);
+    send(&mut socket, vec![text(&ToPage::Access { may_edit })]).await?;
+    tokio::select! {
+        talked = talk(socket, room, caller) => talked,
+        () = Visit::taken_back(&mut visit) => Ok(()),
+    }
+}
+
 /// Until the page goes.
-async fn talk(mut socket: WebSocket, desk: Desk) -> Result<(), axum::Error> {
-    let hub: Arc<Hub> = Arc::clone(&desk.hub);
+async fn talk(mut socket: WebSocket, room: Room, caller: Caller) -> Result<(), axum::Error> {
+    let hub: Arc<Hub> = Arc::clone(&room.desk.hub);
     let mut bell = hub.bell();
     bell.mark_unchanged();
     let (texts, mut told) = hub.first();
-    send(&mut socket, texts).await?;
+    let texts = texts.into_iter().map(|text| for_caller(text, caller));
+    send(&mut socket, texts.collect()).await?;
     let (answers, mut answered) = mpsc::channel(MOST_ANSWERS);
     let reply = Reply { answers };
     let mut ping = tokio::time::interval(PING);
@@ -78,12 +106,33 @@ async fn talk(mut socket: WebSocket, desk: Desk) -> Result<(), axum::Error> {
                 let Some(come) = come else {
                     return Ok(());
                 };
-                if take(come?, &desk, &reply).is_break() {
+                if take(come?, &room, caller, &reply).is_break() {
                     return Ok(());
                 }
             }
         }
     }
+}
+
+/// A message as that caller may read it: who speaks to a device does not say in
+/// which folder the graph is.
+fn for_caller(text: Utf8Bytes, caller: Caller) -> Utf8Bytes {
+    if matches!(caller, Caller::Device(_))
+        && let Ok(mut message) = serde_json::from_str(&text)
+        && without_place(&mut message)
+    {
+        return message.to_string().into();
+    }
+    text
+}
+
+/// Takes out of a message where the graph is; `false` if it does not say so.
+pub(super) fn without_place(message: &mut serde_json::Value) -> bool {
+    let says_so = message["type"] == "hello";
+    if says_so {
+        message["folder"] = "".into();
+    }
+    says_so
 }
 
 async fn send(socket: &mut WebSocket, texts: Vec<Utf8Bytes>) -> Result<(), axum::Error> {
@@ -94,7 +143,7 @@ async fn send(socket: &mut WebSocket, texts: Vec<Utf8Bytes>) -> Result<(), axum:
 }
 
 /// Passes a request on.
-fn take(message: Message, desk: &Desk, reply: &Reply) -> ControlFlow<()> {
+fn take(message: Message, room: &Room, caller: Caller, reply: &Reply) -> ControlFlow<()> {
     let text = match message {
         Message::Text(text) => text,
         Message::Close(_) => return ControlFlow::Break(()),
@@ -102,10 +151,19 @@ fn take(message: Message, desk: &Desk, reply: &Reply) -> ControlFlow<()> {
         Message::Ping(_) | Message::Pong(_) => return ControlFlow::Continue(()),
         Message::Binary(_) => Utf8Bytes::default(),
     };
-    let refusal = match serde_json::from_str(&text) {
+    if let (Ok(sharing), Caller::Owner { may_edit: true }) = (serde_json::from_str(&text), caller) {
+        share(sharing, room, reply);
+        return ControlFlow::Continue(());
+    }
+    let refusal = match serde_json::from_str::<FromPage>(&text) {
+        Ok(request) if request.is_change() && !room.may_edit(caller) => {
+            let told = "this page can only look: it may be on another machine".to_owned();
+            refuse(reply, Level::Warning, told);
+            None
+        }
         Ok(request) => {
             let reply = reply.clone();
-            let is_taken = (desk.ask)(Asking { request, reply });
+            let is_taken = (room.desk.ask)(Asking { request, reply });
             (!is_taken).then(|| "too many requests at once; one was left out".to_owned())
         }
         Err(error) => Some(format!(
@@ -113,8 +171,30 @@ fn take(message: Message, desk: &Desk, reply: &Reply) -> ControlFlow<()> {
         )),
     };
     if let Some(text) = refusal {
-        let level = Level::Error;
-        reply.send(&ToPage::Notice(Notice { level, text }));
+        refuse(reply, Level::Error, text);
     }
     ControlFlow::Continue(())
+}
+
+fn refuse(reply: &Reply, level: Level, text: String) {
+    reply.send(&ToPage::Notice(Notice { level, text }));
+}
+
+/// Sees to what the owner wants of devices, and tells how things stand.
+fn share(sharing: Sharing, room: &Room, reply: &Reply) {
+    let mut shares = Shares::default();
+    if let Some(pairings) = &room.pairings {
+        match sharing {
+            Sharing::Shares => {}
+            Sharing::Pair => {
+                if let Err(error) = pairings.pair() {
+                    let text = format!("no device was paired: {error}");
+                    refuse(reply, Level::Warning, text);
+                }
+            }
+            Sharing::Unpair { id } => pairings.unpair(id),
+        }
+        shares = pairings.shares();
+    }
+    reply.send(&ToPage::Shares(shares));
 }

@@ -3,10 +3,19 @@
 use std::net::{IpAddr, Ipv4Addr};
 use std::path::PathBuf;
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 
 use crate::args::{Setting, setting};
 use crate::commands::engine::EngineArgs;
+
+/// What devices of the local network may do.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Lan {
+    /// See everything and change nothing
+    Look,
+    /// Change values of parameters too
+    Edit,
+}
 
 /// Shows a graph in the browser while it is edited
 #[derive(Debug, Args)]
@@ -19,6 +28,16 @@ pub(crate) struct ViewArgs {
     /// The address that is listened on; others than this machine's own let others look
     #[arg(long, value_name = "ADDRESS", default_value_t = IpAddr::V4(Ipv4Addr::LOCALHOST))]
     pub(crate) host: IpAddr,
+    /// Lets devices of the local network look, or with `edit` change values too, once the page has paired them
+    #[arg(
+        long,
+        value_name = "look|edit",
+        num_args = 0..=1,
+        require_equals = true,
+        default_missing_value = "look",
+        conflicts_with = "host"
+    )]
+    pub(crate) lan: Option<Lan>,
     /// Only prints the page's address, instead of opening it
     #[arg(long)]
     pub(crate) no_open: bool,

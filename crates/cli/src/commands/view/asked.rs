@@ -1,15 +1,22 @@
 //! What becomes of what a page asks for.
 
+use std::sync::Arc;
+
+use tessgraph_geometry::glam::DVec3;
 use tessgraph_graph::plan::ResultRef;
 use tessgraph_graph::reference::node_markdown;
+use tessgraph_io::write_png;
+use tessgraph_render::{DrawOptions, View, draw};
 use tessgraph_view::pick::{measure, pick};
 use tessgraph_view::protocol::{
-    Described, FromPage, Level, Notice, Picked, ResultSummary, ToPage, Value,
+    Described, FromPage, Level, Notice, Picked, PlaneAsked, ResultSummary, ToPage, Value,
 };
+use tessgraph_view::section::section;
 use tessgraph_view::{Asking, Reply};
 
 use super::edits::Refused;
 use super::viewer::{Viewer, setting};
+use crate::interrupt::UntilInterrupt;
 use crate::watch::{Cause, Wish};
 
 impl Viewer<'_> {
@@ -28,12 +35,6 @@ impl Viewer<'_> {
     }
 
     fn see_to(&mut self, request: FromPage, reply: &Reply) -> Wish {
-        if self.is_read_only() && is_change(&request) {
-            return refuse(
-                reply,
-                "this page can only look: it may be on another machine",
-            );
-        }
         match request {
             FromPage::Set { name, value } => self.set(name, &value, reply),
             FromPage::Write { name, value } => self.write(&name, &setting(&value), reply),
@@ -80,6 +81,12 @@ impl Viewer<'_> {
                 }
                 Wish::default()
             }
+            FromPage::Section { request, plane } => self.section(request, plane, reply),
+            FromPage::Render {
+                request,
+                size,
+                towards,
+            } => self.render(request, size, towards, reply),
             FromPage::Describe { node } => self.describe(node, reply),
         }
     }
@@ -175,6 +182,43 @@ impl Viewer<'_> {
         again(cause, true)
     }
 
+    /// Cuts what is shown.
+    fn section(&self, request: u64, plane: PlaneAsked, reply: &Reply) -> Wish {
+        if let Some(subject) = self.subject.clone() {
+            let (buffers, reply) = (Arc::clone(&self.buffers), reply.clone());
+            self.studio.spawn(move || {
+                if let Some(sectioned) = section(&subject, &buffers, request, plane) {
+                    reply.send(&ToPage::Sectioned(sectioned));
+                }
+            });
+        }
+        Wish::default()
+    }
+
+    /// Draws what is shown, for a browser that cannot.
+    fn render(&self, request: u64, size: [u32; 2], towards: [f64; 3], reply: &Reply) -> Wish {
+        let towards = DVec3::from_array(towards);
+        if let Some(subject) = self.subject.clone()
+            && towards.is_finite()
+        {
+            let (buffers, reply) = (Arc::clone(&self.buffers), reply.clone());
+            self.studio.spawn(move || {
+                let options = DrawOptions {
+                    size,
+                    view: View::From(towards),
+                    ..DrawOptions::default()
+                };
+                // A size that cannot be drawn is asked for by nobody who wants a picture.
+                if let Ok(picture) = draw(&subject.mesh, &options, &UntilInterrupt) {
+                    let bytes = write_png(picture.size(), picture.pixels(), &[]);
+                    let picture = buffers.picture(bytes);
+                    reply.send(&ToPage::Rendered { request, picture });
+                }
+            });
+        }
+        Wish::default()
+    }
+
     /// The reference page of a node's kind, and what came out.
     fn describe(&self, node: String, reply: &Reply) -> Wish {
         let found = self.last.clone();
@@ -207,15 +251,6 @@ impl Viewer<'_> {
         });
         Wish::default()
     }
-}
-
-/// Whether a request changes the graph, or what it runs with.
-fn is_change(request: &FromPage) -> bool {
-    use FromPage::{Redo, Reset, Set, Undo, Write};
-    matches!(
-        request,
-        Set { .. } | Write { .. } | Reset { .. } | Undo | Redo
-    )
 }
 
 /// Another run; `stop` ends the one at work.

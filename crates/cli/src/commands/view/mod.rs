@@ -6,6 +6,7 @@
 mod args;
 mod asked;
 mod edits;
+mod network;
 mod problems;
 mod requests;
 mod secret;
@@ -13,9 +14,10 @@ mod studio;
 mod study;
 mod viewer;
 
+use args::Lan;
 pub(crate) use args::ViewArgs;
 
-use std::sync::Arc;
+use std::sync::{Arc, PoisonError};
 
 use tessgraph_view::{Address, Buffers, Desk, Hub, Server};
 
@@ -26,7 +28,7 @@ use crate::interrupt;
 use crate::watch::{Mailbox, Message, Watched, follow};
 use requests::Requests;
 use studio::Studio;
-use viewer::Viewer;
+use viewer::{Pictures, Viewer};
 
 /// The share of the cache's memory that buffers nobody names any more may take.
 const BUFFER_SHARE: u64 = 4;
@@ -53,13 +55,21 @@ pub(crate) fn view(args: &ViewArgs, cx: &mut Context<'_, '_>) -> u8 {
     let (hub, buffers) = (Arc::new(Hub::default()), Arc::new(Buffers::new(budget)));
     let requests = Arc::new(Requests::new(mailbox.post()));
     let taking = Arc::clone(&requests);
+    let pictures = Pictures::default();
+    let listed = Arc::clone(&pictures);
     let desk = Desk {
         hub: Arc::clone(&hub),
         buffers: Arc::clone(&buffers),
         ask: Arc::new(move |asking| taking.put(asking)),
+        picture: Arc::new(move |number| {
+            let paths = listed.lock().unwrap_or_else(PoisonError::into_inner);
+            let path = paths.get(number).cloned();
+            drop(paths);
+            study::picture(&path?)
+        }),
     };
     // Told before anybody can ask.
-    let viewer = Viewer::new(args, &studio, requests, hub, buffers);
+    let viewer = Viewer::new(args, &studio, requests, pictures, hub, buffers);
     let server = match serve(args, cx, desk) {
         Ok(server) => server,
         Err(status) => return status,
@@ -90,9 +100,19 @@ fn wrong_settings(args: &ViewArgs, cx: &mut Context<'_, '_>) -> Option<u8> {
 
 /// Starts the server, or says why not.
 fn serve(args: &ViewArgs, cx: &mut Context<'_, '_>, desk: Desk) -> Result<Server, u8> {
+    let network = args
+        .lan
+        .map(network::network)
+        .transpose()
+        .map_err(|error| {
+            let message = format!("this machine has no address in a local network: {error}");
+            let help = "leave `--lan` out, or join a network first".to_owned();
+            cx.fail(FAILED, "no_network", message, Some(help))
+        })?;
     let address = Address {
         host: args.host,
         port: args.port,
+        network,
     };
     let started = secret::chosen(&args.graph, cx.cache.as_deref())
         .and_then(|token| Server::start(address, token, desk));
@@ -120,6 +140,17 @@ fn announce(args: &ViewArgs, server: &Server, cx: &mut Context<'_, '_>) {
             server.address()
         );
         cx.console.note(&warning);
+    }
+    if let Some(address) = server.network() {
+        let may = match args.lan {
+            Some(Lan::Edit) => "look and change values",
+            _ => "only look",
+        };
+        let note = format!(
+            "note: devices of your network can {may} at http://{address}/ once you pair them under \
+             Share on the page; the connection is not encrypted\n"
+        );
+        cx.console.note(&note);
     }
     let url = server.url();
     cx.console.data(&format!("{url}\n"));

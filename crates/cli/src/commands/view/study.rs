@@ -40,7 +40,47 @@ pub(super) fn find(graph: &Path) -> Option<protocol::Study> {
         path: below.to_string_lossy().into_owned(),
         columns,
         rows,
+        pictures: Vec::new(),
     })
+}
+
+/// Gives every row its picture, where its variant has left one; the paths by
+/// number.
+pub(super) fn add_pictures(graph: &Path, study: &mut protocol::Study) -> Vec<PathBuf> {
+    let table = folder_of(graph).join(&study.path);
+    let variants = folder_of(&table).join("variants");
+    let mut paths = Vec::new();
+    let pictures = study.rows.iter().map(|row| {
+        // Ids that look like numbers are read as such; those name no folder here.
+        let Some(Some(Value::Text(id))) = row.first() else {
+            return None;
+        };
+        let is_name = id
+            .bytes()
+            .all(|byte| byte.is_ascii_alphanumeric() || byte == b'-');
+        let path = first_picture(&variants.join(is_name.then_some(id)?))?;
+        paths.push(path);
+        Some(paths.len() - 1)
+    });
+    study.pictures = pictures.collect();
+    if paths.is_empty() {
+        study.pictures.clear();
+    }
+    paths
+}
+
+/// The first PNG of a folder by name.
+fn first_picture(folder: &Path) -> Option<PathBuf> {
+    let entries = std::fs::read_dir(folder).ok()?.flatten();
+    let pictures = entries.map(|entry| entry.path()).filter(|path| {
+        path.extension().is_some_and(|extension| extension == "png") && path.is_file()
+    });
+    pictures.take(MOST_FILES).min()
+}
+
+/// A picture as the page shows it.
+pub(super) fn picture(path: &Path) -> Option<Vec<u8>> {
+    read_plain(path, LARGEST_TABLE).ok()
 }
 
 /// The graphs and studies of a folder.
@@ -90,6 +130,30 @@ mod tests {
         assert_eq!(rows[0], [word("a1"), number(3.0), word("x, \"y\""), None]);
         assert_eq!(rows[1], [word("b2"), number(0.5), word("true"), word("no")]);
         assert!(parse(b"a,b\n1\n").is_none());
+    }
+
+    #[test]
+    fn rows_have_the_pictures_that_their_variants_left() {
+        let folder = tempfile::tempdir().unwrap();
+        let variants = folder.path().join("out/s/variants");
+        for (variant, file) in [("a1", "b.png"), ("a1", "a.png"), ("c3", "mesh.obj")] {
+            std::fs::create_dir_all(variants.join(variant)).unwrap();
+            std::fs::write(variants.join(variant).join(file), file).unwrap();
+        }
+        std::fs::write(folder.path().join("out/s/secret.png"), "").unwrap();
+        let rows = ["b2", "a1", "c3", "..", "../.."];
+        let mut study = protocol::Study {
+            path: "out/s/results.csv".to_owned(),
+            columns: vec!["id".to_owned()],
+            rows: rows
+                .map(|id| vec![Some(Value::Text(id.to_owned()))])
+                .to_vec(),
+            pictures: Vec::new(),
+        };
+        let paths = add_pictures(&folder.path().join("g.ron"), &mut study);
+        assert_eq!(study.pictures, [None, Some(0), None, None, None]);
+        assert_eq!(paths, [variants.join("a1/a.png")]);
+        assert_eq!(picture(&paths[0]).as_deref(), Some(b"a.png".as_slice()));
     }
 
     #[test]

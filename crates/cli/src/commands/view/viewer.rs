@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use tessgraph_geometry::digest::Digest;
 use tessgraph_graph::document::edit::Declarations;
@@ -27,12 +27,18 @@ use crate::diagnostics::error_count;
 use crate::graph_file::{LARGEST_GRAPH, folder_of};
 use crate::watch::{Cause, Job, Wish, Work};
 
+/// Paths of pictures that pages may ask for by number.
+pub(super) type Pictures = Arc<Mutex<Vec<PathBuf>>>;
+
 /// What the pages see: the graph file, the last run, and what was asked for.
 pub(super) struct Viewer<'a> {
     pub(super) args: &'a ViewArgs,
     pub(super) studio: &'a Studio<'a>,
     pub(super) requests: Arc<Requests>,
+    /// The pictures of the study, by number.
+    pictures: Pictures,
     pub(super) hub: Arc<Hub>,
+    pub(super) buffers: Arc<Buffers>,
     gallery: Arc<Gallery>,
     /// The digest of the graph file when it was read last.
     pub(super) content: Option<Digest>,
@@ -62,6 +68,7 @@ impl<'a> Viewer<'a> {
         args: &'a ViewArgs,
         studio: &'a Studio<'a>,
         requests: Arc<Requests>,
+        pictures: Pictures,
         hub: Arc<Hub>,
         buffers: Arc<Buffers>,
     ) -> Self {
@@ -70,8 +77,10 @@ impl<'a> Viewer<'a> {
             args,
             studio,
             requests,
+            pictures,
             hub,
-            gallery: Arc::new(Gallery::new(buffers)),
+            gallery: Arc::new(Gallery::new(Arc::clone(&buffers))),
+            buffers,
             content: None,
             declared: None,
             document: Document::default(),
@@ -101,7 +110,8 @@ impl<'a> Viewer<'a> {
                 .into(),
             folder: folder.to_string_lossy().into_owned(),
             session: token().unwrap_or_default(),
-            read_only: viewer.is_read_only(),
+            // Pages of paired devices are told apart by the server.
+            read_only: !args.host.is_loopback(),
         }));
         if let Ok(bytes) = read_plain(graph, LARGEST_GRAPH) {
             viewer.know(&bytes);
@@ -113,14 +123,11 @@ impl<'a> Viewer<'a> {
 
     /// Tells pages of the table of a study, if there is one.
     pub(super) fn publish_study(&self) {
-        if let Some(found) = study::find(&self.args.graph) {
+        if let Some(mut found) = study::find(&self.args.graph) {
+            let paths = study::add_pictures(&self.args.graph, &mut found);
+            *self.pictures.lock().unwrap_or_else(PoisonError::into_inner) = paths;
             self.hub.publish(&ToPage::Study(found));
         }
-    }
-
-    /// Whether pages may change nothing: they may be on other machines.
-    pub(super) fn is_read_only(&self) -> bool {
-        !self.args.host.is_loopback()
     }
 
     /// This is the graph file's content now.
