@@ -4,7 +4,7 @@ import { actionOf } from "./core/keys.ts";
 import { viewFragment } from "./core/link.ts";
 import { element } from "./core/dom.ts";
 import type { GraphNode, Shown, Span } from "./core/protocol.ts";
-import type { DrawerSize, DrawerTab } from "./core/settings.ts";
+import type { DrawerSize, DrawerTab, PictureOptions } from "./core/settings.ts";
 import type { Store } from "./core/store.ts";
 import { formatBytes, formatTime } from "./core/units.ts";
 import { ChecksPanel } from "./panels/checks.ts";
@@ -24,9 +24,11 @@ import { Viewbar } from "./panels/viewbar.ts";
 import { Look } from "./look.ts";
 import { Stage } from "./stage.ts";
 import { ColourTool } from "./tools/colours.ts";
+import { Faults } from "./tools/faults.ts";
 import { PickTool } from "./tools/pick.ts";
+import { SectionTool } from "./tools/section.ts";
 import { savePage } from "./tools/save.ts";
-import { captionLines, compose, download } from "./tools/screenshot.ts";
+import { captionLines, compose, download, pictureTexts } from "./tools/screenshot.ts";
 import type { BufferSource, LoadTimes } from "./view/buffers.ts";
 
 export class App {
@@ -46,10 +48,12 @@ export class App {
   private readonly messages: MessagesPanel;
   private readonly banner: Banner;
   private readonly help = helpDialog();
+  private readonly faults: Faults;
   private readonly palette = new Palette();
   private readonly share: ShareDialog;
   private readonly colours: ColourTool | undefined;
   private readonly pick: PickTool | undefined;
+  private section: SectionTool | undefined;
 
   constructor(
     private readonly store: Store,
@@ -61,6 +65,7 @@ export class App {
     const show = (node: string, result?: string): void => this.show(node, result);
     const openSource = (node: GraphNode): void => this.openSource(node.span, node.line);
     this.stage = new Stage(store, act, source);
+    this.faults = new Faults(source);
     const { viewer } = this.stage;
     this.colours = viewer ? new ColourTool(viewer, () => this.legend) : undefined;
     this.pick = viewer ? new PickTool(store, viewer, this.stage.readout) : undefined;
@@ -74,6 +79,8 @@ export class App {
     this.viewbar = new Viewbar(act, (at) => this.look.moveSection(at));
     this.banner = new Banner(store);
     this.look = new Look(store, viewer, this.viewbar, this.banner);
+    this.connectSection(source);
+    this.look.onStandard = (view) => this.stage.still?.look(view);
     this.topbar = new Topbar(store, {
       act,
       show,
@@ -98,7 +105,7 @@ export class App {
       source: this.source.root,
       study: this.study.root,
     };
-    this.share = new ShareDialog(store, { link: () => this.link(), save: () => savePage(address) });
+    this.share = new ShareDialog(store, { link: () => this.link(), save: () => savePage(address), picture: () => void this.screenshot(), options: this.pictureOptions });
     this.drawer = new Drawer(panels, (tab, size) => this.keepDrawer(tab, size), this.look.view.tab, this.look.view.drawer);
     const middle = element("div", { class: "middle" }, this.stage.root, this.viewbar.root, this.drawer.root);
     const rail = element("aside", { class: "rail" }, this.parameters.root, checks.root);
@@ -109,6 +116,12 @@ export class App {
   private listen(): void {
     const { store } = this;
     document.addEventListener("keydown", (event) => this.key(event));
+    // Wherever the key is let go, A comes back.
+    for (const end of ["keyup", "blur"] as const) {
+      window.addEventListener(end, (event) => {
+        if (!(event instanceof KeyboardEvent) || event.key.toLowerCase() === "b") this.parameters.flip(false);
+      });
+    }
     window.addEventListener("hashchange", () => this.followLink());
     store.on("hello", ({ file, folder, session }) => this.greet(`${folder}/${file}`, session));
     store.on("shown", (shown) => void this.showPicture(shown));
@@ -128,11 +141,32 @@ export class App {
     if (viewer) viewer.onPicture = (times) => this.finishPicture(times);
     const { pick } = this;
     if (!pick) return;
+    this.stage.root.append(pick.rectangle);
+    pick.onBoxing = (boxing) => {
+      if (boxing) this.banner.say("info", "Drag a rectangle over panels; Shift adds them, Esc leaves.");
+      else this.banner.hide();
+    };
     pick.onMeasuring = (measuring) => this.viewbar.press("measure", measuring);
     pick.onPanels = () => {
+      this.section?.draw();
       this.look.change({ panels: pick.panels.state() });
       if (pick.panels.hidesSome) this.banner.say("info", "Some panels are hidden: Shift H shows all.");
     };
+  }
+
+  /** The section's plane, its handle and its cut. */
+  private connectSection(source: BufferSource): void {
+    const { viewer } = this.stage;
+    if (!viewer) return;
+    const tool = new SectionTool(this.store, viewer, source);
+    this.stage.root.append(tool.handle);
+    this.stage.onFollow = () => tool.follow();
+    tool.onMove = (at) => this.look.moveSection(at);
+    tool.onTold = (text, title) => this.viewbar.setCut(text, title);
+    tool.isVisible = (panel) => this.pick?.panels.isVisible(panel) ?? true;
+    this.look.onSection = (section) => tool.update(section);
+    this.section = tool;
+    if (this.pick) this.pick.onCut = (x, y, hit) => tool.placeAt(x, y, hit);
   }
 
   /** The first hello brings back how this graph was looked at; a later one only a new session. */
@@ -169,6 +203,11 @@ export class App {
     this.colours.wanted = this.look.view.field;
     this.colours.locked = this.look.view.locked;
   }
+
+  private readonly pictureOptions = {
+    get: (): PictureOptions => this.look.preferences.picture,
+    set: (picture: PictureOptions): void => this.look.setPreference({ picture }),
+  };
 
   /** The address of what is seen now. */
   private link(): string {
@@ -252,6 +291,7 @@ export class App {
     if (target.matches("button, summary, select, [role=button]") && event.key === " ") return;
     if (target.matches("select") && event.key.length === 1 && !event.ctrlKey) return;
     event.preventDefault();
+    if (action === "flip" && event.repeat) return;
     this.act(action);
   }
 
@@ -279,8 +319,9 @@ export class App {
     directions: () => this.look.toggleDirections(),
     colour: () => this.colourBy(this.colours?.next()),
     lock_range: () => this.lock(!this.colours?.locked),
-    section: () => this.look.nextSection(),
+    section: () => this.look.nextSection(this.pick?.corners ?? []),
     section_flip: () => this.look.flipSection(),
+    rectangle: () => this.pick?.toggleRectangle(),
     hide: () => this.pick?.hide(),
     isolate: () => this.pick?.isolate(),
     show_all: () => this.pick?.showAll(),
@@ -288,8 +329,11 @@ export class App {
     screenshot: () => void this.screenshot(),
     next_output: () => this.stepOutput(1),
     previous_output: () => this.stepOutput(-1),
-    previous_check: () => this.stepCheck(-1),
-    next_check: () => this.stepCheck(1),
+    previous_check: () => void this.stepCheck(-1),
+    next_check: () => void this.stepCheck(1),
+    flip: () => {
+      if (!this.parameters.flip(true)) this.banner.say("info", "No parameter has a B: Shift-click on its reset dot keeps its value as B.");
+    },
     undo: () => this.store.send({ type: "undo" }),
     redo: () => this.store.send({ type: "redo" }),
     run: () => this.store.send({ type: "run" }),
@@ -331,7 +375,17 @@ export class App {
 
   private failing = -1;
 
-  private stepCheck(step: number): void {
+  /** Walks through the faces that failing checks mark on what is shown, or through the checks where none marks any. */
+  private async stepCheck(step: number): Promise<void> {
+    const shown = this.store.get("shown");
+    const marked = await this.faults.marked(shown, this.store.get("checks"));
+    if (marked && this.pick) {
+      this.failing = (this.failing + step + marked.faces.length) % marked.faces.length;
+      const face = marked.faces[this.failing] ?? 0;
+      this.pick.goTo(face, marked.panelOf(face));
+      this.banner.say("warning", `${marked.label}: ${this.failing + 1} of ${marked.faces.length} faces`);
+      return;
+    }
     const failing = (this.store.get("checks")?.items ?? []).filter((check) => check.ok === false);
     if (failing.length === 0) {
       this.banner.say("info", "No check fails.");
@@ -357,7 +411,8 @@ export class App {
       },
     }));
     const parameters = (graph?.parameters ?? []).map((p) => ({ label: p.name, hint: "parameter", run: () => this.parameters.focus(p.name) }));
-    return [...parameters, ...nodes];
+    const fields = (this.colours?.choices ?? []).map(({ name, label }) => ({ label: `Colour by ${label}`, hint: "field", run: () => this.colourBy(name) }));
+    return [...parameters, ...nodes, ...fields];
   }
 
   private async screenshot(): Promise<void> {
@@ -365,7 +420,9 @@ export class App {
     if (!viewer) return;
     const { store } = this;
     const shown = store.get("shown");
-    const blob = await compose(viewer.picture(2), captionLines(store.get("hello"), store.get("document"), shown), this.look.preferences.theme, 2);
+    const { theme, picture } = this.look.preferences;
+    const of = [store.get("hello"), store.get("document"), shown] as const;
+    const blob = await compose(viewer.picture(picture.scale, picture.transparent), captionLines(...of), pictureTexts(...of), theme, picture);
     if (blob) download(blob, `${(store.get("hello")?.file ?? "tessgraph").replace(/\.ron$/, "")}_${shown?.node ?? "view"}.png`);
   }
 

@@ -1,6 +1,8 @@
 // How the model is looked at: camera, theme, edges, section. Kept between pages;
 // nothing here changes a result.
 import { readFragment, type Selection } from "./core/link.ts";
+import type { Vec3 } from "./core/protocol.ts";
+import { nextSection, type Section } from "./core/section.ts";
 import type { Store } from "./core/store.ts";
 import { lengthUnit } from "./core/store.ts";
 import {
@@ -16,7 +18,7 @@ import type { Banner } from "./panels/messages.ts";
 import type { Viewbar } from "./panels/viewbar.ts";
 import { PROFILES, PROFILE_LABELS, type Profile, type StandardView } from "./view/camera.ts";
 import type { EdgeMode } from "./view/surface.ts";
-import type { Section, Viewer } from "./view/viewer.ts";
+import type { Viewer } from "./view/viewer.ts";
 
 const EDGE_MODES: EdgeMode[] = ["polygons", "triangles", "none"];
 
@@ -41,6 +43,8 @@ export class Look {
     if (this.graph === graph) return false;
     this.graph = graph;
     this.view = loadView(graph);
+    // Kept by another version, it may be none.
+    if (!this.view.section?.normal) this.view.section = undefined;
     if (this.view.camera) this.viewer?.restoreCamera(this.view.camera);
     this.apply();
     return true;
@@ -115,7 +119,11 @@ export class Look {
     this.change({ edges: EDGE_MODES[index % EDGE_MODES.length] as EdgeMode });
   }
 
+  /** Where there is no viewer. */
+  onStandard: (view: StandardView) => void = () => {};
+
   from(view: StandardView): void {
+    this.onStandard(view);
     this.viewer?.camera.look(view);
     this.viewer?.invalidate();
   }
@@ -151,19 +159,16 @@ export class Look {
     const mesh = this.store.get("shown")?.mesh;
     this.viewer?.setSection(this.view.section);
     this.viewbar.setSection(this.view.section, mesh?.bounds, mesh?.scale ?? 1, lengthUnit(this.store.get("document")));
+    this.onSection(this.view.section);
   }
 
-  /** Across X, then Y, then Z, each time through the middle of the model, then none. */
-  nextSection(): void {
+  /** Called with the plane whenever it, or the model, may be another. */
+  onSection: (section: Section | undefined) => void = () => {};
+
+  /** Across X, then Y, then Z through the middle of the model, then along the picked face, then none. */
+  nextSection(picked: Vec3[]): void {
     const bounds = this.store.get("shown")?.mesh?.bounds;
-    const next = this.view.section ? this.view.section.axis + 1 : 0;
-    if (!bounds || next > 2) {
-      this.change({ section: undefined });
-      return;
-    }
-    const axis = next as Section["axis"];
-    const at = (bounds[0][axis] + bounds[1][axis]) / 2;
-    this.change({ section: { axis, at, flipped: this.view.section?.flipped ?? false } });
+    this.change({ section: bounds && nextSection(this.view.section, bounds, picked) });
   }
 
   moveSection(at: number): void {

@@ -8,6 +8,7 @@ import { Readout } from "./panels/dialogs.ts";
 import type { BufferSource } from "./view/buffers.ts";
 import { Gizmo } from "./view/gizmo.ts";
 import { ScaleBar } from "./view/scale.ts";
+import { Still } from "./view/still.ts";
 import { Viewer } from "./view/viewer.ts";
 
 export class Stage {
@@ -15,6 +16,8 @@ export class Stage {
   readonly readout = new Readout();
   /** Missing where the browser gives no WebGL2: the page works without a picture. */
   readonly viewer: Viewer | undefined;
+  /** There instead. */
+  readonly still: Still | undefined;
   private readonly empty = element("p", { class: "empty", hidden: true });
   private readonly scaleBar = new ScaleBar();
   private readonly gizmo: Gizmo;
@@ -33,7 +36,10 @@ export class Stage {
       this.viewer = new Viewer(this.root, source, smooth);
       this.viewer.onFrame = () => this.follow();
     } catch (error) {
-      this.say(`This browser gives no WebGL2, so there is no picture; parameters, checks and messages work. (${String(error)})`);
+      // The page says so where a picture is missing; the server draws meanwhile.
+      console.info(String(error));
+      this.still = new Still(store, source, this.root);
+      this.root.append(this.still.root, element("p", { class: "no-webgl" }, "This browser gives no WebGL2: tessgraph draws the picture. 1, 3 and 7 turn it; parameters work as ever."));
     }
     this.root.append(this.gizmo.root, this.scaleBar.root, this.empty, this.offScreen, this.readout.root);
     this.say("Connecting to tessgraph…");
@@ -58,14 +64,18 @@ export class Stage {
   /** What the middle says about a result. */
   describe(shown: Shown): void {
     if (shown.empty) this.say(shown.empty);
-    else if (!shown.mesh && !this.viewer?.hasModel) this.say(`${shown.node} is no mesh; it stands in the table below.`);
+    else if (!shown.mesh && !this.viewer?.hasModel && !this.still) this.say(`${shown.node} is no mesh; it stands in the table below.`);
     else this.say(undefined);
   }
+
+  /** Called before each frame, for what else follows the camera. */
+  onFollow: () => void = () => {};
 
   /** Overlays follow the camera. */
   private follow(): void {
     const { viewer } = this;
     if (!viewer) return;
+    this.onFollow();
     this.gizmo.update(viewer.camera.camera);
     const scale = this.store.get("shown")?.mesh?.scale ?? 1;
     this.scaleBar.update(viewer.camera.metresPerPixel(this.root.clientWidth), scale, lengthUnit(this.store.get("document")));

@@ -59,6 +59,13 @@ export class RangeBook {
   }
 }
 
+/** A range of which one end was dragged by a share of its width; the ends never meet. */
+export function draggedRange({ min, max }: ColourRange, end: "low" | "high", share: number): ColourRange {
+  const width = max - min;
+  const least = 0.01 * width;
+  return end === "low" ? { min: Math.min(min + share * width, max - least), max } : { min, max: Math.max(max + share * width, min + least) };
+}
+
 /** Counts of finite values in `bins` equal parts of a range; values outside fall into the end bins. */
 export function histogram(values: Float32Array, range: ColourRange, bins: number): Uint32Array {
   const counts = new Uint32Array(bins);

@@ -187,6 +187,25 @@ export type Measured = {
   distance: Amount;
   delta: [Amount, Amount, Amount];
 };
+/** A plane in absolute metres. */
+export type Plane = { normal: Vec3; at: number };
+/** The cut of what is shown. */
+export type Sectioned = {
+  type: "sectioned";
+  request: number;
+  origin: Vec3;
+  /** Two ends of three f32 each per segment, closed outlines first. */
+  segments: Digest;
+  panels: Digest;
+  count: number;
+  closed_count: number;
+  closed: number;
+  open: number;
+  length: Amount;
+  area: Amount;
+};
+/** A PNG drawn by the server, for a browser that cannot. */
+export type Rendered = { type: "rendered"; request: number; picture: Digest };
 export type Described = {
   type: "described";
   node: string;
@@ -201,7 +220,8 @@ export type Pairing = { id: number; url: string; connected: number };
 /** With whom the page is shared; told to pages of this machine that ask. */
 export type Shares = { type: "shares"; lan: { address: string; edit: boolean } | null; pairings: Pairing[] };
 export type Notice = { type: "notice"; level: "info" | "warning" | "error"; text: string };
-export type Study = { type: "study"; path: string; columns: string[]; rows: (number | string | null)[][] };
+/** `pictures` holds the number of each row's picture; missing where no row has one. */
+export type Study = { type: "study"; path: string; columns: string[]; rows: (number | string | null)[][]; pictures?: (number | null)[] };
 
 export type FromServer =
   | Hello
@@ -213,14 +233,16 @@ export type FromServer =
   | Shown
   | Picked
   | Measured
+  | Sectioned
+  | Rendered
   | Described
   | Notice
   | Study
   | Access
   | Shares;
 
-/** One end of a measurement; a vertex is taken where both are named. */
-export type Place = { vertex?: number; face?: number };
+/** One end of a measurement: a vertex, a face, or the place of a cut that is closest to another; corners within `snap` metres first. */
+export type Place = { vertex?: number; face?: number; cut?: { plane: Plane; near: Vec3; snap: number } };
 
 export type ToServer =
   | { type: "set"; name: string; value: Value }
@@ -234,6 +256,8 @@ export type ToServer =
   | { type: "unpair"; id: number }
   | { type: "cancel" }
   | { type: "run" }
-  | ({ type: "pick"; request: number } & Place)
+  | { type: "pick"; request: number; vertex?: number; face?: number }
+  | { type: "section"; request: number; plane: Plane }
+  | { type: "render"; request: number; size: [number, number]; towards: Vec3 }
   | { type: "measure"; request: number; from: Place; to: Place }
   | { type: "describe"; node: string };

@@ -1,7 +1,7 @@
 // What the person chose about looking: kept across reloads and restarts. The model
 // is never part of it, and neither is anything that changes a result.
 import type { PanelsState } from "../tools/panels.ts";
-import type { Section } from "../view/viewer.ts";
+import type { Section } from "./section.ts";
 import type { CameraState, Profile } from "../view/camera.ts";
 import type { EdgeMode } from "../view/surface.ts";
 import type { ThemeName } from "../view/theme.ts";
@@ -12,7 +12,13 @@ export type DrawerTab = "graph" | "table" | "messages" | "source" | "study";
 export type DrawerSize = "closed" | "part" | "full";
 
 /** For every graph: in the browser's local storage. */
-export type Preferences = { theme: ThemeName; profile: Profile; live: Live };
+export type Preferences = { theme: ThemeName; profile: Profile; live: Live; picture: PictureOptions };
+
+/** How pictures are saved: pixels per pixel of the screen, and whether only the model is on them. */
+export type PictureOptions = { scale: number; transparent: boolean };
+
+/** What can be chosen. */
+export const PICTURE_SCALES = [1, 2, 4];
 
 /** For one graph and one tab: in session storage. */
 export type ViewState = {
@@ -61,7 +67,7 @@ function write(storage: Storage, key: string, value: unknown): void {
 
 export function loadPreferences(): Preferences {
   const light = window.matchMedia("(prefers-color-scheme: light)").matches;
-  return read(localStorage, "tessgraph", { theme: light ? "light" : "dark", profile: "rhino", live: "auto" });
+  return read(localStorage, "tessgraph", { theme: light ? "light" : "dark", profile: "rhino", live: "auto", picture: { scale: 2, transparent: false } });
 }
 
 export function savePreferences(preferences: Preferences): void {

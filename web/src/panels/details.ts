@@ -65,8 +65,8 @@ export class DetailsPanel {
 
   private inputs(node: GraphNode): HTMLElement {
     const rows = node.inputs.map(({ name, text, from }) => {
-      const links = from.map((other) => button(other, `Show ${other}`, () => this.events.show(other), { class: "link" }));
-      return element("tr", {}, element("th", { scope: "row" }, name), element("td", {}, element("code", {}, text), " ", ...links));
+      const links = from.flatMap((other) => [" ", button(other, `Show ${other}`, () => this.events.show(other), { class: "link" })]);
+      return element("tr", {}, element("th", { scope: "row" }, name), element("td", {}, element("code", {}, text), ...links));
     });
     return element("table", { class: "inputs" }, ...rows);
   }

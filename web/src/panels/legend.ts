@@ -2,7 +2,7 @@
 import { button, element, setHidden, setText, svg } from "../core/dom.ts";
 import { CLASSES, MAP_LABELS, type MapName, css, mapGradient } from "../core/colour.ts";
 import { tooltip } from "../core/keys.ts";
-import { type ColourRange, histogram } from "../core/legend.ts";
+import { type ColourRange, draggedRange, histogram } from "../core/legend.ts";
 import type { ShownField } from "../core/protocol.ts";
 import { formatNumber } from "../core/units.ts";
 
@@ -28,6 +28,7 @@ export class Legend {
   private readonly numbers: HTMLElement;
   private readonly classes = element("div", { class: "classes" });
   private field: ShownField | undefined;
+  private range: ColourRange | undefined;
 
   constructor(private readonly events: LegendEvents) {
     for (const [value, label] of Object.entries(MAP_LABELS)) this.maps.append(element("option", { value }, label));
@@ -39,11 +40,30 @@ export class Legend {
       "div",
       {},
       this.bars,
-      this.gradient,
+      element("div", { class: "scale-of-colours" }, this.gradient, this.grip("low"), this.grip("high")),
       element("div", { class: "ends" }, this.low, this.unit, this.high),
       element("div", { class: "legend-tools" }, lockLabel, button("range of this result", "Let the colours span this result's values", () => events.release(), { class: "link" }), this.maps),
     );
     this.root.append(this.title, this.numbers, this.classes);
+  }
+
+  /** An end of the colours that can be dragged; the boxes below do the same for the keyboard. */
+  private grip(end: "low" | "high"): HTMLElement {
+    const grip = element("span", { class: `grip ${end}`, "aria-hidden": "true", title: "Drag to clamp the colours here; a double click spans this result" });
+    grip.addEventListener("dblclick", () => this.events.release());
+    grip.addEventListener("pointerdown", (event) => {
+      const { range } = this;
+      const width = this.gradient.clientWidth;
+      if (!range || event.button !== 0) return;
+      event.preventDefault();
+      grip.setPointerCapture(event.pointerId);
+      const move = (moved: PointerEvent): void => {
+        this.events.range(draggedRange(range, end, (moved.clientX - event.clientX) / width));
+      };
+      grip.addEventListener("pointermove", move);
+      grip.addEventListener("lostpointercapture", () => grip.removeEventListener("pointermove", move), { once: true });
+    });
+    return grip;
   }
 
   hide(): void {
@@ -62,6 +82,7 @@ export class Legend {
       return;
     }
     this.gradient.style.background = mapGradient(map);
+    this.range = range;
     this.low.value = formatNumber(range.min, 5);
     this.high.value = formatNumber(range.max, 5);
     setText(this.unit, field.unit);

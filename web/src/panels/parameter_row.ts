@@ -2,6 +2,7 @@
 import { button, element, setText } from "../core/dom.ts";
 import type { Parameter, Value } from "../core/protocol.ts";
 import { type Range, sliderRange, snap } from "../core/slider.ts";
+import type { Alternatives } from "../core/alternatives.ts";
 import type { Store } from "../core/store.ts";
 import { isLive, type Live, Throttle } from "../core/throttle.ts";
 import { formatNumber, parseQuantity, tidy } from "../core/units.ts";
@@ -26,7 +27,7 @@ type Changes = { live(value: Value): void; commit(value: Value): void };
 /** Arrow keys write after this pause, so that ten strokes are one edit of the file. */
 const KEY_PAUSE_MS = 400;
 
-export function makeRow(first: Parameter, store: Store, live: () => Live): Row {
+export function makeRow(first: Parameter, store: Store, live: () => Live, alternatives: Alternatives): Row {
   const lastRun = (): number => store.get("status")?.ms ?? 0;
   const throttle = new Throttle<Value>(
     (value) => store.send({ type: "set", name: first.name, value }),
@@ -42,8 +43,13 @@ export function makeRow(first: Parameter, store: Store, live: () => Live): Row {
     },
   };
   const editor = makeEditor(first, changes);
-  const reset = button("", "Reset", () => store.send({ type: "reset", name: first.name }), { class: "reset" });
-  const pin = element("span", { class: "pin", title: "Set on the command line; the file's value is not used" }, "--set");
+  const reset = button("", "Reset", () => {}, { class: "reset" });
+  reset.addEventListener("click", (event) => {
+    if (event.shiftKey) alternatives.store(current);
+    else if (current.value !== current.initial) store.send({ type: "reset", name: first.name });
+  });
+  const pin = element("span", { class: "pin", title: "Held by --set on the command line; the file's value is not used" }, "⚲ --set");
+  let current = first;
   const label = element("label", { class: "name" }, first.name);
   const target = editor.nodes.find((node) => node.matches("input, select"));
   if (target) {
@@ -55,11 +61,15 @@ export function makeRow(first: Parameter, store: Store, live: () => Live): Row {
   root.dataset["name"] = first.name;
 
   const update = (parameter: Parameter, readOnly: boolean): void => {
+    current = parameter;
+    const other = alternatives.of(parameter.name);
+    reset.classList.toggle("has-b", other !== undefined);
     const changed = parameter.value !== parameter.initial;
     const initial = typeof parameter.initial === "number" ? formatNumber(parameter.initial) : String(parameter.initial);
     reset.classList.toggle("filled", changed);
-    reset.disabled = !changed || readOnly || parameter.locked;
-    reset.title = changed ? `Reset to ${initial}, as the file said when this page began` : "As the file said when this page began";
+    reset.disabled = readOnly || parameter.locked;
+    const kept = other === undefined ? "Shift-click keeps this value as B" : `B is ${typeof other === "number" ? formatNumber(other) : String(other)}: hold B to see it, Shift-click at B forgets it`;
+    reset.title = `${changed ? `Reset to ${initial}, as the file said when this page began` : "As the file said when this page began"}. ${kept}`;
     reset.setAttribute("aria-label", `Reset ${parameter.name}`);
     const range = parameter.min !== undefined && parameter.max !== undefined ? ` (${formatNumber(parameter.min)} to ${formatNumber(parameter.max)} ${parameter.unit})` : "";
     label.title = `${parameter.about || parameter.name}${range}, line ${parameter.line}. Double click resets it`;

@@ -1,8 +1,9 @@
 // The parameters of the graph: slider, box, unit and reset for each.
-import { button, element, setHidden } from "../core/dom.ts";
+import { Alternatives } from "../core/alternatives.ts";
+import { button, element, setHidden, setText } from "../core/dom.ts";
 import type { Document, Parameter } from "../core/protocol.ts";
 import { isReadOnly, type Store } from "../core/store.ts";
-import type { Live } from "../core/throttle.ts";
+import { isLive, type Live } from "../core/throttle.ts";
 import { type Row, makeRow } from "./parameter_row.ts";
 
 /** More parameters than this get a search box and groups that fold. */
@@ -32,6 +33,7 @@ export class ParametersPanel {
   private readonly search = element("input", { type: "search", placeholder: "Search parameters", "aria-label": "Search parameters" });
   private readonly undo: HTMLButtonElement;
   private readonly redo: HTMLButtonElement;
+  private readonly alternatives: Alternatives;
   private rows = new Map<string, Row>();
   private shape = "";
 
@@ -41,7 +43,14 @@ export class ParametersPanel {
   ) {
     this.undo = button("↶", "Take back the last edit made here (Ctrl Z)", () => store.send({ type: "undo" }), { class: "icon" });
     this.redo = button("↷", "Make it again (Ctrl Shift Z)", () => store.send({ type: "redo" }), { class: "icon" });
-    const header = element("header", {}, element("h2", {}, "Parameters"), liveSwitch(live), this.undo, this.redo);
+    this.alternatives = new Alternatives((message) => store.send(message));
+    this.alternatives.onChange = () => {
+      const document = store.get("document");
+      if (document) this.update(document);
+    };
+    const { select, tell } = liveSwitch(live);
+    store.on("status", ({ ms }) => tell(ms));
+    const header = element("header", {}, element("h2", {}, "Parameters"), select, this.undo, this.redo);
     this.search.addEventListener("input", () => this.filter());
     this.root.append(header, this.search, this.list);
     this.live = live.get;
@@ -71,7 +80,7 @@ export class ParametersPanel {
   }
 
   private build(parameters: Parameter[]): void {
-    this.rows = new Map(parameters.map((p) => [p.name, makeRow(p, this.store, this.live)]));
+    this.rows = new Map(parameters.map((p) => [p.name, makeRow(p, this.store, this.live, this.alternatives)]));
     const many = parameters.length > MANY;
     setHidden(this.search, !many);
     if (parameters.length === 0) {
@@ -104,6 +113,12 @@ export class ParametersPanel {
     }
   }
 
+  /** Shows the values kept as B, or those of the file again; says whether any are kept. */
+  flip(toB: boolean): boolean {
+    if (isReadOnly(this.store)) return false;
+    return this.alternatives.flip(toB, this.store.get("document")?.parameters ?? []);
+  }
+
   /** Puts the keyboard on a parameter. */
   focus(name: string): void {
     const row = this.rows.get(name);
@@ -113,7 +128,10 @@ export class ParametersPanel {
   }
 }
 
-function liveSwitch(live: { get(): Live; set(live: Live): void }): HTMLElement {
+type LiveSwitch = { select: HTMLElement; tell(lastRunMs: number | undefined): void };
+
+/** When a moved slider is evaluated; "auto" says which of both it is now. */
+function liveSwitch(live: { get(): Live; set(live: Live): void }): LiveSwitch {
   const labels: [Live, string][] = [
     ["auto", "live: auto"],
     ["always", "live: always"],
@@ -124,7 +142,12 @@ function liveSwitch(live: { get(): Live; set(live: Live): void }): HTMLElement {
     "aria-label": "When a moved slider is evaluated",
     title: "When a moved slider is evaluated. Auto: while it moves if the last run took less than 0.3 s, else on release",
   });
-  for (const [value, label] of labels) select.append(element("option", { value, selected: live.get() === value }, label));
+  const options = labels.map(([value, label]) => element("option", { value, selected: live.get() === value }, label));
+  select.append(...options);
   select.addEventListener("change", () => live.set(select.value as Live));
-  return select;
+  const tell = (lastRunMs: number | undefined): void => {
+    const [auto] = options;
+    if (auto && lastRunMs !== undefined) setText(auto, isLive("auto", lastRunMs) ? "auto: live" : "auto: on release");
+  };
+  return { select, tell };
 }

@@ -2,6 +2,8 @@
 // same network.
 import qrcode from "qrcode-generator";
 import { button, element, setHidden, setText, svg } from "../core/dom.ts";
+import { tooltip } from "../core/keys.ts";
+import { PICTURE_SCALES, type PictureOptions } from "../core/settings.ts";
 import type { Pairing, Shares } from "../core/protocol.ts";
 import type { Store } from "../core/store.ts";
 import { formatBytes } from "../core/units.ts";
@@ -34,6 +36,9 @@ function qrPicture(text: string): SVGElement {
 }
 
 export type ShareEvents = {
+  /** Saves a picture as the options say. */
+  picture(): void;
+  options: { get(): PictureOptions; set(options: PictureOptions): void };
   /** The address of this view. */
   link(): string;
   /** Fetches the page that needs no server, or says why there is none. */
@@ -41,7 +46,7 @@ export type ShareEvents = {
 };
 
 export class ShareDialog {
-  readonly root = element("dialog", { class: "share", "aria-label": "Share" });
+  readonly root = element("dialog", { class: "share-dialog", "aria-label": "Share" });
   private readonly address = element("input", { type: "text", readonly: true, "aria-label": "Address of this view" });
   private readonly copied = element("span", { role: "status", class: "hint" });
   private readonly saved = element("span", { role: "status", class: "hint" });
@@ -65,7 +70,7 @@ export class ShareDialog {
       this.copied,
     );
     const page = element("section", {}, element("h3", {}, "Offline page"), element("p", { class: "hint" }, "One HTML file with the model in it, to look at anywhere; parameters are text, nothing is computed."), this.save, " ", this.saved);
-    this.root.append(element("form", { method: "dialog" }, element("h2", {}, "Share"), close), link, page, this.phone);
+    this.root.append(element("form", { method: "dialog" }, element("h2", {}, "Share"), close), link, this.picture(), page, this.phone);
     this.root.addEventListener("close", () => clearInterval(this.timer));
     store.on("shares", (shares) => this.update(shares));
   }
@@ -84,6 +89,23 @@ export class ShareDialog {
     ask();
     clearInterval(this.timer);
     this.timer = setInterval(ask, REFRESH_MS);
+  }
+
+  private picture(): HTMLElement {
+    const { options } = this.events;
+    const scale = element("select", { "aria-label": "Sharpness" }, ...PICTURE_SCALES.map((times) => element("option", { value: times, selected: times === options.get().scale }, `${times}×`)));
+    const clear = element("input", { type: "checkbox" });
+    clear.checked = options.get().transparent;
+    const take = (): void => options.set({ scale: Number(scale.value), transparent: clear.checked });
+    for (const node of [scale, clear]) node.addEventListener("change", take);
+    const save = button("Save picture", tooltip("screenshot"), () => this.events.picture());
+    return element(
+      "section",
+      {},
+      element("h3", {}, "Picture"),
+      element("p", { class: "hint" }, "A PNG of what is seen, with the parameters under it and in it."),
+      element("div", { class: "line" }, scale, element("label", {}, clear, " transparent"), save),
+    );
   }
 
   private copy(): void {

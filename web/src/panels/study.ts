@@ -1,6 +1,6 @@
 // A study's results as parallel coordinates: a line for each variant, an axis for
 // each column. Dragging along an axis keeps the variants within.
-import { button, element, setText, svg } from "../core/dom.ts";
+import { button, element, setHidden, setText, svg } from "../core/dom.ts";
 import { colourAt, css } from "../core/colour.ts";
 import type { Study } from "../core/protocol.ts";
 import type { Store } from "../core/store.ts";
@@ -9,6 +9,9 @@ import { formatNumber } from "../core/units.ts";
 import { valueText } from "./checks.ts";
 
 const MARGIN = { left: 70, right: 90, top: 40, bottom: 26 };
+
+/** Height of the strip of pictures, with its margin. */
+const PICTURES_HEIGHT = 118;
 
 export class StudyPanel {
   readonly root = element("div", { class: "study" });
@@ -19,6 +22,8 @@ export class StudyPanel {
   private readonly readout = element("p", { class: "hint" });
   private readonly hint = element("p", { class: "hint" }, "No study of this graph has results yet: `tessgraph study` makes them.");
   private readonly clear: HTMLButtonElement;
+  /** Pictures of variants, those within the limits. */
+  private readonly pictures = element("div", { class: "study-pictures", hidden: true, role: "list", "aria-label": "Pictures of the variants" });
   private study: Study | undefined;
   private axes: StudyAxis[] = [];
   private brushes = new Map<number, [number, number]>();
@@ -29,7 +34,7 @@ export class StudyPanel {
       this.brushes.clear();
       this.draw();
     }, { class: "link" });
-    this.root.append(element("div", { class: "study-head" }, this.readout, this.clear, this.hint), this.canvas, this.axesPicture);
+    this.root.append(element("div", { class: "study-head" }, this.readout, this.clear, this.hint), this.canvas, this.axesPicture, this.pictures);
     this.clear.hidden = true;
     store.on("study", (study) => this.take(study));
     new ResizeObserver(() => this.draw()).observe(this.root);
@@ -41,6 +46,8 @@ export class StudyPanel {
     this.study = study;
     this.axes = studyAxes(study.columns, study.rows, (n) => formatNumber(n, 4));
     this.brushes.clear();
+    this.pictures.hidden = !study.pictures;
+    this.pictures.replaceChildren(...(study.pictures ?? []).flatMap((number, row) => (number === null ? [] : [this.picture(number, row)])));
     this.hint.hidden = true;
     this.clear.hidden = false;
     this.onStudy();
@@ -53,7 +60,7 @@ export class StudyPanel {
 
   private get size(): { width: number; height: number; gap: number; depth: number } {
     const width = this.root.clientWidth;
-    const height = Math.max(120, this.root.clientHeight - 34);
+    const height = Math.max(120, this.root.clientHeight - 34 - (this.pictures.hidden ? 0 : PICTURES_HEIGHT));
     const gap = (width - MARGIN.left - MARGIN.right) / Math.max(1, this.axes.length - 1);
     return { width, height, gap, depth: height - MARGIN.top - MARGIN.bottom };
   }
@@ -103,7 +110,26 @@ export class StudyPanel {
       line(this.hovered);
     }
     this.drawAxes();
+    for (const picture of this.pictures.children as HTMLCollectionOf<HTMLElement>) {
+      const row = Number(picture.dataset["row"]);
+      setHidden(picture, !this.kept(row));
+      picture.classList.toggle("hovered", row === this.hovered);
+    }
     setText(this.readout, this.hovered === undefined ? `${study.path}: ${kept} of ${study.rows.length} variants` : this.describe(this.hovered));
+  }
+
+  private picture(number: number, row: number): HTMLElement {
+    const name = String(this.study?.rows[row]?.[0] ?? row);
+    // The address is relative to the page's own; the server knows the number, no path.
+    const image = element("img", { src: `picture/${number}`, alt: this.describe(row), loading: "lazy" });
+    const item = element("figure", { role: "listitem", tabindex: 0, title: this.describe(row) }, image, element("figcaption", {}, name));
+    item.dataset["row"] = String(row);
+    const hover = (): void => {
+      this.hovered = row;
+      this.draw();
+    };
+    for (const event of ["pointerenter", "focus"] as const) item.addEventListener(event, hover);
+    return item;
   }
 
   private describe(row: number): string {

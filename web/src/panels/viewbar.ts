@@ -2,8 +2,8 @@
 import { element, setHidden, setText } from "../core/dom.ts";
 import { type Action, tooltip } from "../core/keys.ts";
 import type { Vec3 } from "../core/protocol.ts";
+import { axisOf, planeName, reach, type Section } from "../core/section.ts";
 import { formatNumber } from "../core/units.ts";
-import type { Section } from "../view/viewer.ts";
 
 const TOGGLES: { action: Action; label: string }[] = [
   { action: "fit", label: "Fit" },
@@ -25,7 +25,8 @@ export class Viewbar {
   private readonly place = element("span", { class: "section-place" });
   private readonly profile = element("button", { type: "button", class: "tool profile" });
   private readonly times = element("span", { class: "times" });
-  private bounds: [Vec3, Vec3] | undefined;
+  private readonly told = element("span", { class: "section-told", role: "status" });
+  private span: [number, number] | undefined;
 
   constructor(act: (action: Action) => void, moveSection: (at: number) => void) {
     for (const { action, label } of TOGGLES) {
@@ -41,7 +42,7 @@ export class Viewbar {
     });
     this.profile.title = tooltip("navigation");
     this.profile.addEventListener("click", () => act("navigation"));
-    this.root.append(this.slider, this.place, element("span", { class: "spring" }), this.times, this.profile);
+    this.root.append(this.slider, this.place, this.told, element("span", { class: "spring" }), this.times, this.profile);
   }
 
   /** Presses or releases a button; `label` replaces its word where a toggle has more than two states. */
@@ -61,27 +62,29 @@ export class Viewbar {
     this.times.title = title;
   }
 
-  private axis: 0 | 1 | 2 = 0;
-
   private fromSlider(value: number): number | undefined {
-    if (!this.bounds) return undefined;
-    const [low, high] = this.bounds;
-    return low[this.axis] + (value / STEPS) * (high[this.axis] - low[this.axis]);
+    if (!this.span) return undefined;
+    const [low, high] = this.span;
+    return low + (value / STEPS) * (high - low);
   }
 
   /** Shows the section's slider; `scale` is file units per metre. */
   setSection(section: Section | undefined, bounds: [Vec3, Vec3] | undefined, scale: number, unit: string): void {
-    setHidden(this.slider, !section);
-    setHidden(this.place, !section);
-    this.press("section", section !== undefined, section ? `Section ${"XYZ"[section.axis]}` : "Section");
+    for (const node of [this.slider, this.place, this.told]) setHidden(node, !section);
+    this.press("section", section !== undefined, section ? `Section ${planeName(section)}` : "Section");
     if (!section || !bounds) return;
-    this.bounds = bounds;
-    this.axis = section.axis;
-    const [low, high] = bounds;
-    const span = high[section.axis] - low[section.axis] || 1;
-    this.slider.value = String(Math.round((STEPS * (section.at - low[section.axis])) / span));
-    const text = `${"XYZ"[section.axis]?.toLowerCase()} = ${formatNumber(section.at * scale, 4)} ${unit}`;
+    const [low, high] = reach(section.normal, bounds);
+    this.span = [low, high];
+    this.slider.value = String(Math.round((STEPS * (section.at - low)) / (high - low || 1)));
+    const axis = axisOf(section);
+    const text = `${axis === undefined ? "d" : "xyz"[axis]} = ${formatNumber(section.at * scale, 5)} ${unit}`;
     setText(this.place, text);
     this.slider.setAttribute("aria-valuetext", text);
+  }
+
+  /** What the section cuts, in words. */
+  setCut(text: string | undefined, title: string | undefined): void {
+    setText(this.told, text ?? "");
+    this.told.title = title ?? "";
   }
 }

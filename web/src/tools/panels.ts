@@ -19,6 +19,12 @@ export class Panels {
     this.selected.add(panel);
   }
 
+  /** Selects several panels, or adds them to the selection. */
+  selectAll(panels: Iterable<number>, adding: boolean): void {
+    if (!adding) this.selected.clear();
+    for (const panel of panels) this.selected.add(panel);
+  }
+
   /** Hides what is selected; says how many panels that were. */
   hide(): number {
     const count = this.selected.size;
@@ -39,6 +45,11 @@ export class Panels {
 
   get isIsolating(): boolean {
     return this.isolated !== undefined;
+  }
+
+  /** Whether a panel is drawn. */
+  isVisible(panel: number): boolean {
+    return !this.hidden.has(panel) && (this.isolated?.has(panel) ?? true);
   }
 
   /** Whether any panel is out of sight. */

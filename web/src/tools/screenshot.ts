@@ -1,5 +1,8 @@
-// A picture to keep: what is seen, with the parameters it was made from under it.
+// A picture to keep: what is seen, with the parameters it was made from under it
+// and in it.
+import { withTexts } from "../core/png.ts";
 import type { Document, Hello, Shown } from "../core/protocol.ts";
+import type { PictureOptions } from "../core/settings.ts";
 import { valueText } from "../panels/checks.ts";
 import type { ThemeName } from "../view/theme.ts";
 
@@ -8,6 +11,15 @@ export function captionLines(hello: Hello | undefined, graph: Document | undefin
   const what = [hello?.file ?? "tessgraph", shown ? shown.node : ""].filter(Boolean).join(" · ");
   const values = (graph?.parameters ?? []).map((p) => `${p.name} ${valueText({ value: p.value, unit: p.unit })}`);
   return [what, ...values];
+}
+
+/** What a picture says of itself, as `tessgraph render` writes it too: parameters with all digits, in the file's units. */
+export function pictureTexts(hello: Hello | undefined, graph: Document | undefined, shown: Shown | undefined): [string, string][] {
+  const [title = "tessgraph"] = captionLines(hello, undefined, shown);
+  const parameters = (graph?.parameters ?? []).map((p) => `${p.name} = ${String(p.value)}`);
+  const texts: [string, string][] = [["Software", `tessgraph ${hello?.version ?? ""}`.trim()], ["Title", title]];
+  if (parameters.length > 0) texts.push(["Parameters", parameters.join("\n")]);
+  return texts;
 }
 
 /** Puts words together into lines no wider than `most`. */
@@ -22,11 +34,11 @@ export function wrap(parts: string[], separator: string, most: number, width: (t
   return lines;
 }
 
-/** The picture with its caption as a PNG. */
-export function compose(picture: HTMLCanvasElement, caption: string[], theme: ThemeName, scale: number): Promise<Blob | null> {
+/** The picture with its caption and texts as a PNG; a transparent one stays so around the model. */
+export async function compose(picture: HTMLCanvasElement, caption: string[], texts: [string, string][], theme: ThemeName, { scale, transparent }: PictureOptions): Promise<Blob | undefined> {
   const canvas = document.createElement("canvas");
   const context = canvas.getContext("2d");
-  if (!context) return Promise.resolve(null);
+  if (!context) return undefined;
   const size = 13 * scale;
   const pad = 10 * scale;
   const [title = "", ...values] = caption;
@@ -35,7 +47,8 @@ export function compose(picture: HTMLCanvasElement, caption: string[], theme: Th
   canvas.width = picture.width;
   canvas.height = picture.height + 2 * pad + (lines.length + 1) * size * 1.5;
   context.fillStyle = theme === "dark" ? "#1b1e22" : "#ffffff";
-  context.fillRect(0, 0, canvas.width, canvas.height);
+  const top = transparent ? picture.height : 0;
+  context.fillRect(0, top, canvas.width, canvas.height - top);
   context.drawImage(picture, 0, 0);
   context.fillStyle = theme === "dark" ? "#e6e8eb" : "#1d2025";
   context.textBaseline = "top";
@@ -43,7 +56,10 @@ export function compose(picture: HTMLCanvasElement, caption: string[], theme: Th
   context.fillText(title, pad, picture.height + pad);
   context.font = `${size}px sans-serif`;
   lines.forEach((line, i) => context.fillText(line, pad, picture.height + pad + (i + 1) * size * 1.5));
-  return new Promise((resolve) => canvas.toBlob(resolve, "image/png"));
+  const blob = await new Promise<Blob | null>((resolve) => canvas.toBlob(resolve, "image/png"));
+  if (!blob) return undefined;
+  const bytes = withTexts(new Uint8Array(await blob.arrayBuffer()), texts);
+  return new Blob([bytes], { type: "image/png" });
 }
 
 /** Offers a file to be saved. */

@@ -150,13 +150,6 @@ void main() {
   // Colours that mean something are shaded less, so that the legend can be trusted.
   float shade = valuesOn == 0 ? 0.26 + 0.46 * key + 0.2 * sky + 0.14 * head : 0.6 + 0.26 * key + 0.1 * sky + 0.08 * head;
   vec3 lit = base * shade;
-  if (cut && back && !ghost) {
-    // Behind the cut the inside is seen: hatched, as a section is drawn.
-    vec2 pixel = gl_FragCoord.xy / pixelRatio;
-    float stripe = abs(fract((pixel.x + pixel.y) / 9.0) - 0.5) * 9.0;
-    lit = mix(edgeColour, base * 0.95, smoothstep(0.4, 1.4, stripe));
-    edge *= 0.4;
-  }
   float alpha = ghost ? mix(picked || selected != 0u ? 0.5 : 0.09, 0.55, edge) : 1.0;
   colour = vec4(mix(lit, edgeColour, ghost ? edge : edge * 0.85), alpha);
 }

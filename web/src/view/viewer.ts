@@ -6,8 +6,10 @@ import {
   ColorManagement,
   LinearSRGBColorSpace,
   Frustum,
+  Line3,
   Matrix4,
   NearestFilter,
+  Plane,
   RGBAIntegerFormat,
   Scene,
   Sphere,
@@ -19,9 +21,11 @@ import {
 import type { MapName } from "../core/colour.ts";
 import type { ColourRange } from "../core/legend.ts";
 import type { Shown, ShownField, Vec3 } from "../core/protocol.ts";
+import { dot, type Section } from "../core/section.ts";
 import { Buffers, type BufferSource, type LoadTimes } from "./buffers.ts";
 import { type CameraState, ViewCamera } from "./camera.ts";
 import { boxCorners, samplePoints } from "./fit.ts";
+import { Cap } from "./cap.ts";
 import { Ground } from "./ground.ts";
 import { Marks } from "./marks.ts";
 import { type EdgeMode, Surface, neededBuffers } from "./surface.ts";
@@ -33,8 +37,8 @@ ColorManagement.enabled = false;
 /** What lies under a pixel. */
 export type Hit = { face: number; panel: number; vertex: number; point: Vector3 };
 
-/** A section plane: axis, place along it in absolute metres, and which side stays. */
-export type Section = { axis: 0 | 1 | 2; at: number; flipped: boolean };
+/** Places that stand for what a rectangle shows, beside one of each panel. */
+const MOST_PLACES = 2000;
 
 /** More triangles than this are drawn at one pixel per pixel while the camera moves. */
 const HEAVY_TRIANGLES = 3_000_000;
@@ -42,6 +46,7 @@ const HEAVY_TRIANGLES = 3_000_000;
 export class Viewer {
   readonly camera: ViewCamera;
   readonly marks = new Marks();
+  readonly cap = new Cap();
   /** Called before each frame: overlays follow the camera. */
   onFrame: () => void = () => {};
   /** Called with the bytes of each buffer fetched. */
@@ -75,7 +80,7 @@ export class Viewer {
     source: BufferSource,
     smooth: () => boolean,
   ) {
-    this.renderer = new WebGLRenderer({ antialias: true, powerPreference: "high-performance" });
+    this.renderer = new WebGLRenderer({ antialias: true, alpha: true, stencil: true, powerPreference: "high-performance" });
     this.renderer.outputColorSpace = LinearSRGBColorSpace;
     const canvas = this.renderer.domElement;
     canvas.tabIndex = 0;
@@ -92,7 +97,7 @@ export class Viewer {
       minFilter: NearestFilter,
       magFilter: NearestFilter,
     });
-    this.scene.add(this.ground.group, this.surface.group, this.marks.group);
+    this.scene.add(this.ground.group, this.surface.group, this.cap.group, this.marks.group);
     this.pickScene.add(this.surface.pickGroup);
     for (const event of ["control", "wake", "transitionstart"] as const) {
       this.camera.controls.addEventListener(event, () => this.invalidate());
@@ -172,6 +177,12 @@ export class Viewer {
     return new Vector3(point[0] - origin[0], point[1] - origin[1], point[2] - origin[2]);
   }
 
+  /** Scene coordinates to absolute metres. */
+  fromScene(point: Vector3): Vec3 {
+    const [x, y, z] = this.origin ?? [0, 0, 0];
+    return [point.x + x, point.y + y, point.z + z];
+  }
+
   /** Points that stand for the model: some of its vertices, or its box. */
   private points(): Vector3[] {
     const mesh = this.shown?.mesh;
@@ -200,10 +211,45 @@ export class Viewer {
 
   /** What lies under a point of the canvas, in CSS pixels. */
   hit(x: number, y: number): Hit | undefined {
+    const [face = 0, panel = 0, vertex = 0, bits = 0] = this.ids(x, y, 1, 1);
+    if (face === 0) return undefined;
+    return { face: face - 1, panel, vertex, point: this.unproject(x, y, bits) };
+  }
+
+  /** The panels seen within a rectangle of the canvas, and some of their places in absolute metres. */
+  panelsIn(x: number, y: number, width: number, height: number): { panels: Set<number>; places: Vec3[] } {
+    const [columns, rows] = [Math.max(1, Math.round(width)), Math.max(1, Math.round(height))];
+    const ids = this.ids(x, y, columns, rows);
+    const panels = new Set<number>();
+    const places: Vec3[] = [];
+    const every = Math.max(1, Math.floor((columns * rows) / MOST_PLACES));
+    for (let i = 0; i < columns * rows; i += 1) {
+      const panel = ids[4 * i + 1] as number;
+      if (ids[4 * i] === 0) continue;
+      const isNew = !panels.has(panel);
+      panels.add(panel);
+      if (!isNew && i % every !== 0) continue;
+      // Rows of a picture begin at the bottom.
+      const [column, row] = [i % columns, rows - 1 - Math.floor(i / columns)];
+      places.push(this.fromScene(this.unproject(x + column, y + row, ids[4 * i + 3] as number)));
+    }
+    return { panels, places };
+  }
+
+  /** The place of the scene at a point of the canvas, from the bits of its depth. */
+  private unproject(x: number, y: number, bits: number): Vector3 {
+    const { width, height } = this.canvas.getBoundingClientRect();
+    const depth = new Float32Array(new Uint32Array([bits]).buffer)[0] as number;
+    return new Vector3((2 * x) / width - 1, 1 - (2 * y) / height, 2 * depth - 1).unproject(this.camera.camera);
+  }
+
+  /** Four numbers for each pixel of a part of the picture: face + 1 or 0, panel, vertex, bits of the depth. */
+  private ids(x: number, y: number, columns: number, rows: number): Uint32Array {
     const { width, height } = this.canvas.getBoundingClientRect();
     const { camera } = this.camera;
     this.camera.clip(this.sphere());
-    camera.setViewOffset(width, height, x, y, 1, 1);
+    camera.setViewOffset(width, height, x, y, columns, rows);
+    this.pickTarget.setSize(columns, rows);
     this.renderer.setRenderTarget(this.pickTarget);
     const gl = this.renderer.getContext() as WebGL2RenderingContext;
     // An integer target is cleared by its own call.
@@ -213,15 +259,11 @@ export class Viewer {
     this.renderer.autoClear = false;
     this.renderer.render(this.pickScene, camera);
     this.renderer.autoClear = true;
-    const ids = new Uint32Array(4);
-    gl.readPixels(0, 0, 1, 1, gl.RGBA_INTEGER, gl.UNSIGNED_INT, ids);
+    const ids = new Uint32Array(4 * columns * rows);
+    gl.readPixels(0, 0, columns, rows, gl.RGBA_INTEGER, gl.UNSIGNED_INT, ids);
     this.renderer.setRenderTarget(null);
     camera.clearViewOffset();
-    const [face = 0, panel = 0, vertex = 0, bits = 0] = ids;
-    if (face === 0) return undefined;
-    const depth = new Float32Array(new Uint32Array([bits]).buffer)[0] as number;
-    const point = new Vector3((2 * x) / width - 1, 1 - (2 * y) / height, 2 * depth - 1).unproject(camera);
-    return { face: face - 1, panel, vertex, point };
+    return ids;
   }
 
   setColours(map: MapName, range: ColourRange): void {
@@ -234,6 +276,7 @@ export class Viewer {
     this.scene.background = new Color(theme.background);
     this.surface.setTheme(theme);
     this.ground.setTheme(theme);
+    this.cap.setTheme(theme);
     this.marks.setTheme(theme);
     this.invalidate();
   }
@@ -281,11 +324,31 @@ export class Viewer {
       this.surface.setCut(undefined);
       return;
     }
-    const plane: [number, number, number, number] = [0, 0, 0, 0];
     const side = section.flipped ? -1 : 1;
-    plane[section.axis] = side;
-    plane[3] = -side * (section.at - (this.origin ?? [0, 0, 0])[section.axis]);
-    this.surface.setCut(plane);
+    const [x, y, z] = section.normal.map((n) => side * n) as Vec3;
+    this.surface.setCut([x, y, z, -side * (section.at - dot(section.normal, this.origin ?? [0, 0, 0]))]);
+  }
+
+  /** Where the line of sight through a point of the canvas meets a plane, in the scene. */
+  onPlane(x: number, y: number, section: Section): Vector3 | undefined {
+    const { width, height } = this.canvas.getBoundingClientRect();
+    const { camera } = this.camera;
+    const far = (z: number): Vector3 => new Vector3((2 * x) / width - 1, 1 - (2 * y) / height, z).unproject(camera);
+    const normal = new Vector3(...section.normal);
+    const at = section.at - dot(section.normal, this.origin ?? [0, 0, 0]);
+    return new Plane(normal, -at).intersectLine(new Line3(far(-1), far(1)), new Vector3()) ?? undefined;
+  }
+
+  /** How far a place of the scene lies before the camera. */
+  depthOf(point: Vector3): number {
+    return -point.clone().applyMatrix4(this.camera.camera.matrixWorldInverse).z;
+  }
+
+  /** Where a place in absolute metres is on the canvas, in CSS pixels. */
+  toScreen(point: Vec3): { x: number; y: number } {
+    const place = this.toScene(point).project(this.camera.camera);
+    const { clientWidth, clientHeight } = this.canvas;
+    return { x: ((place.x + 1) / 2) * clientWidth, y: ((1 - place.y) / 2) * clientHeight };
   }
 
   cameraState(): CameraState | undefined {
@@ -361,6 +424,7 @@ export class Viewer {
     const wanted = heavy && this.moving ? 1 : Math.min(window.devicePixelRatio, 2);
     if (wanted === this.renderer.getPixelRatio()) return;
     this.renderer.setPixelRatio(wanted);
+    this.cap.setPixelRatio(wanted);
     this.surface.setEdges(this.edgeMode, wanted);
   }
 
@@ -374,17 +438,28 @@ export class Viewer {
     this.onFrame();
   }
 
-  /** The picture as it is now, `times` as sharp, drawn on a canvas of its own. */
-  picture(times: number): HTMLCanvasElement {
+  /** The picture as it is now, `times` as sharp, drawn on a canvas of its own; transparent it has neither background nor ground. */
+  picture(times: number, transparent: boolean): HTMLCanvasElement {
     const before = this.renderer.getPixelRatio();
+    const { background } = this.scene;
+    const ground = this.ground.group.visible;
+    if (transparent) {
+      this.scene.background = null;
+      this.ground.group.visible = false;
+      this.renderer.setClearColor(0x000000, 0);
+    }
     this.renderer.setPixelRatio(times);
+    this.cap.setPixelRatio(times);
     this.surface.setEdges(this.edgeMode, times);
     this.draw();
     const copy = document.createElement("canvas");
     copy.width = this.canvas.width;
     copy.height = this.canvas.height;
     copy.getContext("2d")?.drawImage(this.canvas, 0, 0);
+    this.scene.background = background;
+    this.ground.group.visible = ground;
     this.renderer.setPixelRatio(before);
+    this.cap.setPixelRatio(before);
     this.surface.setEdges(this.edgeMode, before);
     this.draw();
     return copy;

@@ -50,17 +50,24 @@ export class Workshop {
   }
 
   /** Starts `tessgraph view` and waits for its address. */
-  async serve(graph: string, options: { port?: number; token?: string } = {}): Promise<Server> {
+  async serve(graph: string, options: ServerOptions = {}): Promise<Server> {
     const server = await Server.start(this.path(graph), this.path("cache"), options);
     this.servers.push(server);
     return server;
   }
 
-  async clear(): Promise<void> {
+  /** Ends all servers; their folder stays. */
+  async stop(): Promise<void> {
     await Promise.all(this.servers.map((server) => server.kill()));
+  }
+
+  async clear(): Promise<void> {
+    await this.stop();
     rmSync(this.folder, { recursive: true, force: true });
   }
 }
+
+type ServerOptions = { port?: number; token?: string; more?: string[] };
 
 export class Server {
   private constructor(
@@ -68,8 +75,8 @@ export class Server {
     readonly address: string,
   ) {}
 
-  static async start(graph: string, cache: string, { port, token }: { port?: number; token?: string }): Promise<Server> {
-    const args = ["view", graph, "--no-open", "--cache", cache, ...(port === undefined ? [] : ["--port", String(port)])];
+  static async start(graph: string, cache: string, { port, token, more = [] }: ServerOptions): Promise<Server> {
+    const args = ["view", graph, "--no-open", "--cache", cache, ...more, ...(port === undefined ? [] : ["--port", String(port)])];
     const child = spawn(program(), args, {
       env: { ...process.env, ...(token === undefined ? {} : { TESSGRAPH_VIEW_TOKEN: token }) },
       stdio: ["ignore", "pipe", "pipe"],

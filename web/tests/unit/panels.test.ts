@@ -4,7 +4,7 @@ import { Vector3 } from "three";
 import { pause } from "../../src/core/connection.ts";
 import { BOX_WIDTH, layoutGraph } from "../../src/core/layout.ts";
 import { blocks, spans } from "../../src/core/markdown.ts";
-import type { Document, GraphNode, Hello, Status } from "../../src/core/protocol.ts";
+import type { Document, GraphNode, Status } from "../../src/core/protocol.ts";
 import { Offsets, tokens } from "../../src/core/source.ts";
 import { nearestRow, studyAxes } from "../../src/core/study.ts";
 import { chipOf } from "../../src/panels/chip.ts";
@@ -63,20 +63,21 @@ test("RON lines are taken apart without losing a letter", () => {
 });
 
 test("the chip says what is true of the picture", () => {
-  const hello: Hello = { type: "hello", version: "0", file: "f", folder: "", session: "1", read_only: false };
-  const of = (status: Partial<Status>): string => chipOf("open", hello, { type: "status", state: "up_to_date", ...status }, undefined).text;
+  const of = (status: Partial<Status>): string => chipOf("open", false, { type: "status", state: "up_to_date", ...status }, undefined).text;
   assert.equal(of({ ms: 210 }), "Up to date 210 ms");
   assert.equal(of({ state: "computing", done: 3, total: 7, node: "even", fraction: 0.5 }), "Computing 3/7 even 50 %");
-  const timed = (elapsed: number, last?: number): string => chipOf("open", hello, { type: "status", state: "computing", done: 0, total: 2 }, undefined, { elapsed, last }).text;
+  const timed = (elapsed: number, last?: number): string => chipOf("open", false, { type: "status", state: "computing", done: 0, total: 2 }, undefined, { elapsed, last }).text;
   assert.equal(timed(100, 4000), "Computing 0/2");
   assert.equal(timed(1234, 4000), "Computing 0/2 · 1.2 s of ~4.00 s");
   assert.equal(timed(1234), "Computing 0/2 · 1.2 s");
   assert.equal(of({ state: "stale", errors: 2, line: 14 }), "Stale: 2 errors (line 14)");
   assert.equal(of({ state: "stale", errors: 1 }), "Stale: 1 error");
   assert.equal(of({ state: "waiting", waiting_for: "meshes/roof.obj" }), "Waiting for meshes/roof.obj");
-  assert.equal(chipOf("retrying", hello, { type: "status", state: "up_to_date" }, undefined).text, "Disconnected: retrying");
-  assert.match(chipOf("refused", hello, undefined, undefined).text, /new address/);
-  assert.match(chipOf("open", { ...hello, read_only: true }, { type: "status", state: "up_to_date" }, undefined).text, /read only/);
+  assert.equal(chipOf("retrying", false, { type: "status", state: "up_to_date" }, undefined).text, "Disconnected: retrying");
+  assert.match(chipOf("refused", false, undefined, undefined).text, /new address/);
+  assert.equal(chipOf("open", true, { type: "status", state: "up_to_date" }, undefined).text, "Up to date · Read only (shared)");
+  assert.equal(chipOf("open", true, { type: "status", state: "computing" }, undefined).act, undefined, "a guest stops nobody's run");
+  assert.match(chipOf("offline", true, { type: "status", state: "up_to_date" }, undefined).text, /^Offline page/);
 });
 
 test("each result stands once in the menu, with its name when it is not the main one", () => {
