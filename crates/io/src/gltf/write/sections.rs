@@ -213,7 +213,7 @@ fn vertices<T: NoUninit, const N: usize>(
     of_run: impl Fn(usize, Range<usize>, &mut Vec<[T; N]>) + Sync,
 ) -> Result<(), IoError> {
     stream.elements(part.run_count(), |runs, out| {
-        let mut values = Vec::new();
+        let mut values = Vec::with_capacity(4 * runs.len());
         part.for_runs(source.mesh(), runs, |face, corners| {
             of_run(face, corners, &mut values);
         });
@@ -229,7 +229,7 @@ fn triangles<T: NoUninit>(
     index: impl Fn(u32) -> T + Sync,
 ) -> Result<(), IoError> {
     stream.elements(part.face_count(), |faces, out| {
-        let mut values = Vec::new();
+        let mut values = Vec::with_capacity(2 * faces.len());
         part.for_triangles(source.mesh(), numbers, faces, |triangle| {
             values.push(triangle.map(&index));
         });
