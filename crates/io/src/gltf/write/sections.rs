@@ -89,7 +89,7 @@ pub(super) struct Described {
     pub(super) primitives: Vec<Value>,
 }
 
-/// Describes the binary chunk that [`write`] writes.
+/// Describes the binary chunk that [`write()`] writes.
 pub(super) fn describe(parts: &Parts, source: &Source<'_>) -> Described {
     let mut described = Described::default();
     for (material, part) in parts.list.iter().enumerate() {
@@ -151,7 +151,7 @@ impl Described {
     }
 }
 
-/// Elements that [`write`] counts for the monitor.
+/// Elements that [`write()`] counts for the monitor.
 pub(super) fn element_count(parts: &Parts, source: &Source<'_>) -> usize {
     let of_part = |part: &Part| {
         let runs = |section: Section| match section.attribute() {
