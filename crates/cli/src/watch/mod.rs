@@ -73,6 +73,10 @@ pub(crate) trait Work<'a> {
         Wish::default()
     }
 
+    /// Called from time to time, every two seconds or so, to look at what nobody
+    /// tells of.
+    fn look(&mut self) {}
+
     /// The system tells of no changes.
     fn deaf(&mut self, reason: &str);
 }
@@ -158,8 +162,10 @@ impl<'s, 'a: 's, W: Work<'a>> Watcher<'s, 'a, W> {
             if let Some(reason) = self.places.deaf.take() {
                 self.work.deaf(&reason);
             }
-            let looked = self.places.look_if_due(Instant::now());
-            self.touch(looked, Step::Begun);
+            if let Some(looked) = self.places.look_if_due(Instant::now()) {
+                self.touch(looked, Step::Begun);
+                self.work.look();
+            }
             self.stop_if_stale();
         }
     }

@@ -110,10 +110,11 @@ impl<'a> Places<'a> {
         files.flatten().collect()
     }
 
-    /// Looks at every place from time to time: the files that were touched.
-    pub(super) fn look_if_due(&mut self, now: Instant) -> BTreeSet<PathBuf> {
+    /// Looks at every place from time to time: the files that were touched; `None`
+    /// while it is not time.
+    pub(super) fn look_if_due(&mut self, now: Instant) -> Option<BTreeSet<PathBuf>> {
         if now < self.next_look {
-            return BTreeSet::new();
+            return None;
         }
         let changed = self.stamps.changed(&look);
         let interval = if self.notices.is_some() {
@@ -122,7 +123,7 @@ impl<'a> Places<'a> {
             OFTEN
         };
         self.next_look = Instant::now() + interval;
-        self.files_at(&changed)
+        Some(self.files_at(&changed))
     }
 
     /// The first of `files` that is not as a run read it last.

@@ -1,6 +1,8 @@
 //! The table of a study of the graph that is shown, if there is one.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::time::SystemTime;
 
 use tessgraph_graph::study::Study;
 use tessgraph_graph::world::read_plain;
@@ -19,29 +21,63 @@ const MOST_FILES: usize = 1000;
 /// The folders studies are looked for in, from the graph's.
 const FOLDERS: [&str; 2] = ["", "studies"];
 
-/// The newest table of a study of the graph: of studies beside it, or in the
-/// folder `studies` there.
-pub(super) fn find(graph: &Path) -> Option<protocol::Study> {
-    let folder = folder_of(graph);
-    let files = FOLDERS.iter().flat_map(|name| files_in(&folder.join(name)));
-    let tables = files.filter_map(|file| {
-        let bytes = read_plain(&file, LARGEST_GRAPH).ok()?;
-        let study = Study::read(&file.to_string_lossy(), &bytes).ok()?;
-        let of = folder_of(&file).join(study.graph());
-        let table = table_of(&file);
-        let changed = table.metadata().ok()?.modified().ok()?;
-        is_same_file(&of, graph).then_some((changed, table))
-    });
-    let (_, table) = tables.max()?;
-    let bytes = read_plain(&table, LARGEST_TABLE).ok()?;
-    let (columns, rows) = parse(&bytes)?;
-    let below = table.strip_prefix(&folder).unwrap_or(&table);
-    Some(protocol::Study {
-        path: below.to_string_lossy().into_owned(),
-        columns,
-        rows,
-        pictures: Vec::new(),
-    })
+/// The studies of the graph, and which of their tables was told last.
+#[derive(Default)]
+pub(super) struct Studies {
+    /// The table of each file that is a study of the graph, and nothing for the
+    /// others, as they were at that time.
+    known: BTreeMap<PathBuf, (SystemTime, Option<PathBuf>)>,
+    told: Option<(SystemTime, PathBuf)>,
+}
+
+impl Studies {
+    /// The newest table of a study of the graph, of studies beside it or in the
+    /// folder `studies` there, if it is another than the last time.
+    ///
+    /// Only files that are new are read: this is asked again and again.
+    pub(super) fn look(&mut self, graph: &Path) -> Option<protocol::Study> {
+        let folder = folder_of(graph);
+        let mut known = BTreeMap::new();
+        for file in FOLDERS.iter().flat_map(|name| files_in(&folder.join(name))) {
+            let Some(changed) = modified(&file) else {
+                continue;
+            };
+            let before = self.known.remove(&file);
+            let before = before.filter(|(then, _)| *then == changed);
+            let found = before.unwrap_or_else(|| (changed, table_for(&file, graph)));
+            known.insert(file, found);
+        }
+        self.known = known;
+        let tables = self.known.values().filter_map(|(_, table)| table.as_ref());
+        let newest = tables.filter_map(|table| Some((modified(table)?, table.clone())));
+        let newest = newest.max()?;
+        if self.told.as_ref() == Some(&newest) {
+            return None;
+        }
+        let bytes = read_plain(&newest.1, LARGEST_TABLE).ok()?;
+        let (columns, rows) = parse(&bytes)?;
+        let below = newest.1.strip_prefix(&folder).unwrap_or(&newest.1);
+        let path = below.to_string_lossy().into_owned();
+        self.told = Some(newest);
+        Some(protocol::Study {
+            path,
+            columns,
+            rows,
+            pictures: Vec::new(),
+        })
+    }
+}
+
+fn modified(file: &Path) -> Option<SystemTime> {
+    file.metadata().ok()?.modified().ok()
+}
+
+/// The table of the study in `file`, if it is one of the graph.
+fn table_for(file: &Path, graph: &Path) -> Option<PathBuf> {
+    let bytes = read_plain(file, LARGEST_GRAPH).ok()?;
+    let study = Study::read(&file.to_string_lossy(), &bytes).ok()?;
+    let of = folder_of(file).join(study.graph());
+    is_same_file(&of, graph).then(|| table_of(file))
 }
 
 /// Gives every row its picture, where its variant has left one; the paths by
@@ -173,7 +209,8 @@ mod tests {
         std::fs::write(at("h.ron"), "").unwrap();
         std::fs::write(at("other.ron"), study("h.ron")).unwrap();
         std::fs::write(at("studies/mine.ron"), study("../g.ron")).unwrap();
-        let found = find(&at("g.ron")).unwrap();
+        let mut studies = Studies::default();
+        let found = studies.look(&at("g.ron")).unwrap();
         assert_eq!(
             Path::new(&found.path),
             Path::new("studies/out/mine/results.csv")
@@ -182,6 +219,22 @@ mod tests {
             found.rows,
             [[Some(Value::Text("studies/out/mine".to_owned()))]]
         );
-        assert!(find(&at("studies/mine.ron")).is_none());
+        assert_eq!(studies.look(&at("g.ron")), None, "nothing is new");
+        assert!(Studies::default().look(&at("studies/mine.ron")).is_none());
+    }
+
+    #[test]
+    fn a_table_that_is_made_later_is_found_then() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        std::fs::write(at("g.ron"), "").unwrap();
+        let study = "Study(version: 1, graph: \"g.ron\", axes: {\"n\": Values(of: [1])}, keep: [])";
+        std::fs::write(at("s.ron"), study).unwrap();
+        let mut studies = Studies::default();
+        assert_eq!(studies.look(&at("g.ron")), None);
+        let table = table_of(&at("s.ron"));
+        std::fs::create_dir_all(table.parent().unwrap()).unwrap();
+        std::fs::write(&table, "id\na\n").unwrap();
+        assert_eq!(studies.look(&at("g.ron")).unwrap().columns, ["id"]);
     }
 }

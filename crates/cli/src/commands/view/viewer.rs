@@ -21,7 +21,7 @@ use super::edits::Edits;
 use super::problems::problems;
 use super::requests::Requests;
 use super::studio::{Done, Order, Studio, Viewed};
-use super::study;
+use super::study::{self, Studies};
 use crate::commands::run::Control;
 use crate::diagnostics::error_count;
 use crate::graph_file::{LARGEST_GRAPH, folder_of};
@@ -45,6 +45,7 @@ pub(super) struct Viewer<'a> {
     pub(super) declared: Option<Declarations>,
     document: Document,
     values: Values,
+    studies: Studies,
     /// Values that somebody is trying out, as `--set` takes them.
     pub(super) live: BTreeMap<String, String>,
     pub(super) edits: Edits,
@@ -88,6 +89,7 @@ impl<'a> Viewer<'a> {
                 locked,
                 ..Values::default()
             },
+            studies: Studies::default(),
             live: BTreeMap::new(),
             edits: Edits::default(),
             asked: None,
@@ -121,9 +123,9 @@ impl<'a> Viewer<'a> {
         viewer
     }
 
-    /// Tells pages of the table of a study, if there is one.
-    pub(super) fn publish_study(&self) {
-        if let Some(mut found) = study::find(&self.args.graph) {
+    /// Tells pages of the table of a study, if there is a new one.
+    pub(super) fn publish_study(&mut self) {
+        if let Some(mut found) = self.studies.look(&self.args.graph) {
             let paths = study::add_pictures(&self.args.graph, &mut found);
             *self.pictures.lock().unwrap_or_else(PoisonError::into_inner) = paths;
             self.hub.publish(&ToPage::Study(found));
@@ -356,6 +358,10 @@ impl<'a> Work<'a> for Viewer<'a> {
     fn deaf(&mut self, reason: &str) {
         let text = format!("changes are looked for, not told: {reason}");
         self.notice(Level::Info, text);
+    }
+
+    fn look(&mut self) {
+        self.publish_study();
     }
 }
 
