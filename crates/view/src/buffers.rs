@@ -1,7 +1,7 @@
 //! Raw buffers by name: what the 3D view draws, each made once.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 
 use axum::body::Bytes;
 use bytemuck::NoUninit;
@@ -9,8 +9,8 @@ use tessgraph_geometry::digest::{Digest, Hasher};
 
 use crate::protocol::BufferName;
 
-/// Makes a buffer when it is first asked for.
-type Make = Arc<dyn Fn() -> Bytes + Send + Sync>;
+/// Makes a buffer, once.
+type Make = Box<dyn FnOnce() -> Bytes + Send>;
 
 /// The buffers of the last messages.
 ///
@@ -32,16 +32,82 @@ struct Store {
 }
 
 struct Blob {
-    content: Content,
+    content: Arc<Content>,
     bytes: usize,
     /// The message that named it last.
     used: u64,
 }
 
-#[derive(Clone)]
-enum Content {
+/// A buffer's bytes, or the way to them.
+struct Content {
+    state: Mutex<State>,
+    /// Rings when the state is another.
+    bell: Condvar,
+}
+
+enum State {
     Made(Bytes),
     Awaited(Make),
+    /// A thread is making it.
+    AtWork,
+    /// Making it panicked.
+    Lost,
+}
+
+impl Content {
+    fn new(state: State) -> Arc<Self> {
+        Arc::new(Self {
+            state: Mutex::new(state),
+            bell: Condvar::new(),
+        })
+    }
+
+    fn state(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The bytes, made now unless they were before; waits for a thread that is
+    /// making them. Not for threads of a pool: what is waited for may need them.
+    fn wait(&self) -> Option<Bytes> {
+        self.make();
+        let at_work = |state: &mut State| matches!(state, State::AtWork);
+        let state = self.bell.wait_while(self.state(), at_work);
+        match &*state.unwrap_or_else(PoisonError::into_inner) {
+            State::Made(bytes) => Some(bytes.clone()),
+            _ => None,
+        }
+    }
+
+    /// Makes the bytes, unless that was done or a thread is at it.
+    fn make(&self) {
+        let mut state = self.state();
+        let State::Awaited(_) = &*state else {
+            return;
+        };
+        let State::Awaited(make) = std::mem::replace(&mut *state, State::AtWork) else {
+            return;
+        };
+        // Not under the lock: making it may take a while, or the thread pool.
+        drop(state);
+        let mut outcome = Outcome {
+            content: self,
+            state: State::Lost,
+        };
+        outcome.state = State::Made(make());
+    }
+}
+
+/// What making a buffer came to; told when this is dropped, by a panic too.
+struct Outcome<'a> {
+    content: &'a Content,
+    state: State,
+}
+
+impl Drop for Outcome<'_> {
+    fn drop(&mut self) {
+        *self.content.state() = std::mem::replace(&mut self.state, State::Lost);
+        self.content.bell.notify_all();
+    }
 }
 
 /// Owns an array of numbers as bytes, without copying it.
@@ -65,19 +131,27 @@ impl Buffers {
         Self { budget, store }
     }
 
-    /// The buffer of that name, made now if it was not before.
+    /// The buffer of that name, made now if it was not before. Not for threads of
+    /// a pool: it may wait for one of them.
     pub(crate) fn get(&self, name: Digest) -> Option<Bytes> {
-        let content = self.store().blobs.get(&name)?.content.clone();
-        let make = match content {
-            Content::Made(bytes) => return Some(bytes),
-            Content::Awaited(make) => make,
-        };
-        // Not under the lock: making it may take a while, or the thread pool.
-        let bytes = make();
-        if let Some(blob) = self.store().blobs.get_mut(&name) {
-            blob.content = Content::Made(bytes.clone());
+        self.content(name)?.wait()
+    }
+
+    /// Has the thread pool make the buffer of that name, before anybody asks.
+    pub(crate) fn prepare(&self, name: BufferName) {
+        if let Some(content) = self.content(name.0) {
+            rayon::spawn(move || content.make());
         }
-        Some(bytes)
+    }
+
+    /// Whether the buffer of that name is there and was made.
+    pub(crate) fn is_made(&self, name: BufferName) -> bool {
+        let content = self.content(name.0);
+        content.is_some_and(|content| matches!(&*content.state(), State::Made(_)))
+    }
+
+    fn content(&self, name: Digest) -> Option<Arc<Content>> {
+        Some(Arc::clone(&self.store().blobs.get(&name)?.content))
     }
 
     /// A finished picture, named by its content.
@@ -92,11 +166,15 @@ impl Buffers {
         if let Some(found) = self.touch_made(source) {
             return found;
         }
-        let content = make();
+        let (name, length) = self.given(make());
+        self.store().made.insert(source, name.0);
+        (name, length)
+    }
+
+    /// A buffer that is there, named by its content.
+    pub(crate) fn given(&self, content: Bytes) -> (BufferName, usize) {
         let (name, length) = (Digest::of(&content), content.len());
-        let mut store = self.store();
-        store.made.insert(source, name);
-        store.keep(name, length, Content::Made(content));
+        self.store().keep(name, length, || State::Made(content));
         (BufferName(name), length)
     }
 
@@ -106,10 +184,10 @@ impl Buffers {
         &self,
         source: Digest,
         length: usize,
-        make: impl Fn() -> Bytes + Send + Sync + 'static,
+        make: impl FnOnce() -> Bytes + Send + 'static,
     ) -> BufferName {
         self.store()
-            .keep(source, length, Content::Awaited(Arc::new(make)));
+            .keep(source, length, || State::Awaited(Box::new(make)));
         BufferName(source)
     }
 
@@ -158,11 +236,11 @@ impl Buffers {
 }
 
 impl Store {
-    fn keep(&mut self, name: Digest, bytes: usize, content: Content) {
+    fn keep(&mut self, name: Digest, bytes: usize, state: impl FnOnce() -> State) {
         // One more than the last message: not to be let go before the next.
         let used = self.clock + 1;
-        let blob = self.blobs.entry(name).or_insert(Blob {
-            content,
+        let blob = self.blobs.entry(name).or_insert_with(|| Blob {
+            content: Content::new(state()),
             bytes,
             used,
         });
@@ -221,10 +299,43 @@ mod tests {
         });
         buffers.sent(&named(&[name]));
         assert_eq!(count.load(Ordering::Relaxed), 0);
+        assert!(!buffers.is_made(name));
         assert_eq!(&buffers.get(name.0).unwrap()[..], &7u32.to_le_bytes());
-        assert!(buffers.get(name.0).is_some());
+        assert!(buffers.get(name.0).is_some() && buffers.is_made(name));
         assert_eq!(count.load(Ordering::Relaxed), 1);
         buffers.sent(&named(&[]));
+        assert!(buffers.get(name.0).is_none());
+    }
+
+    #[test]
+    fn who_asks_while_a_buffer_is_made_waits_for_it() {
+        let buffers = Buffers::new(0);
+        let (begun, begins) = std::sync::mpsc::channel();
+        let (go, gone) = std::sync::mpsc::channel();
+        let name = buffers.awaited(Digest::of(b"x"), 4, move || {
+            begun.send(()).unwrap();
+            gone.recv().unwrap();
+            bytes(vec![7u32])
+        });
+        buffers.prepare(name);
+        begins.recv().unwrap();
+        std::thread::scope(|scope| {
+            let asking: Vec<_> = (0..3)
+                .map(|_| scope.spawn(|| buffers.get(name.0)))
+                .collect();
+            go.send(()).unwrap();
+            for asked in asking {
+                assert_eq!(&asked.join().unwrap().unwrap()[..], &7u32.to_le_bytes());
+            }
+        });
+    }
+
+    #[test]
+    fn a_buffer_that_cannot_be_made_keeps_nobody_waiting() {
+        let buffers = Buffers::new(0);
+        let name = buffers.awaited(Digest::of(b"x"), 4, || panic!("as the test wants it"));
+        let making = std::thread::scope(|scope| scope.spawn(|| buffers.get(name.0)).join());
+        assert!(making.is_err());
         assert!(buffers.get(name.0).is_none());
     }
 }

@@ -18,7 +18,7 @@ use crate::protocol::{BufferName, ShownDirections, ShownMesh};
 
 /// A mesh as buffers.
 pub(super) fn mesh(buffers: &Buffers, mesh: &Arc<Mesh>, units: Units) -> ShownMesh {
-    let (low, high) = mesh.bounds().unwrap_or_default();
+    let (low, high) = bounds(mesh.positions());
     let origin = origin(low, high);
     let mut named = BTreeMap::new();
     let mut name = |(name, bytes): (BufferName, usize)| {
@@ -26,6 +26,8 @@ pub(super) fn mesh(buffers: &Buffers, mesh: &Arc<Mesh>, units: Units) -> ShownMe
         name
     };
     let positions = name(positions(buffers, mesh, origin));
+    // Whoever draws the mesh asks for them.
+    buffers.prepare(positions);
     let cut = Cut::new(mesh);
     let triangles_buffer = name(buffers.made(cut.source("vertices"), || cut.vertices()));
     let triangle_faces = name(buffers.made(cut.source("faces"), || cut.faces()));
@@ -58,6 +60,18 @@ pub(super) fn directions(buffers: &Buffers, directions: &Arc<Directions>) -> Sho
         outward: buffers.awaited(source, 12 * outward.len(), make),
         on: "mesh",
     }
+}
+
+/// Smallest and largest coordinates; zeros without any.
+fn bounds(positions: &[DVec3]) -> (DVec3, DVec3) {
+    let Some(&first) = positions.first() else {
+        return (DVec3::ZERO, DVec3::ZERO);
+    };
+    let wider = |(low, high): (DVec3, DVec3), (other, another): (DVec3, DVec3)| {
+        (low.min(other), high.max(another))
+    };
+    let one = |found, vertex: usize| wider(found, (positions[vertex], positions[vertex]));
+    parallel::reduce(positions.len(), || (first, first), one, wider)
 }
 
 /// A place near the middle of a box, so that numbers about it are no larger than
@@ -99,7 +113,7 @@ fn triples(vectors: &[DVec3], origin: DVec3) -> Bytes {
 }
 
 /// `f(index)` for all indices, in parallel.
-pub(super) fn all<T: Send + Clone + Default>(
+pub(crate) fn all<T: Send + Clone + Default>(
     count: usize,
     f: impl Fn(usize) -> T + Sync,
 ) -> Vec<T> {
@@ -116,16 +130,17 @@ struct Cut<'a> {
 impl<'a> Cut<'a> {
     fn new(mesh: &'a Mesh) -> Self {
         let topology: &Topology = mesh.topology();
-        // How a polygon is cut depends on where its corners are.
-        let is_triangles = topology.corner_count() == 3 * topology.face_count();
-        let from = if is_triangles {
-            vec![topology.digest()]
+        // How a polygon is cut depends on where its corners are, but seldom: then
+        // buffers of an earlier mesh with the same faces are named again.
+        let source = if mesh.is_cut_into_fans() {
+            source("fans", &[topology.digest()])
         } else {
-            vec![topology.digest(), mesh.positions().digest()]
+            let positions = mesh.positions().digest();
+            source("triangles", &[topology.digest(), positions])
         };
         Self {
             mesh,
-            source: source("triangles", &from).finish(),
+            source: source.finish(),
             triangles: OnceCell::new(),
         }
     }
@@ -267,6 +282,22 @@ mod tests {
         assert_ne!(one.positions, other.positions);
         assert_eq!(one.triangles_buffer, other.triangles_buffer);
         assert_eq!(one.edges, other.edges);
+    }
+
+    #[test]
+    fn a_face_that_is_cut_in_another_way_has_other_triangles() {
+        let buffers = Buffers::new(0);
+        let house = house();
+        let one = mesh(&buffers, &house, Units::M);
+        // The second corner of the square sinks into it.
+        let mut places = house.positions().to_vec();
+        places[1] = places[0] + DVec3::new(0.3, 0.0, 0.6);
+        let dented = Arc::new(house.with_positions(places).unwrap());
+        let other = mesh(&buffers, &dented, Units::M);
+        assert_ne!(one.triangles_buffer, other.triangles_buffer);
+        let triangles = ids(&content(&buffers, other.triangles_buffer));
+        assert_eq!(triangles[..6], [1, 2, 3, 0, 1, 3]);
+        assert_eq!(one.triangle_faces, other.triangle_faces);
     }
 
     #[test]

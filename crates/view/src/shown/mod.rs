@@ -1,10 +1,11 @@
 //! What the 3D view shows of a result: a mesh, what lies on it, and tables.
 
 mod fields;
+mod memo;
 mod mesh;
 mod tables;
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use tessgraph_geometry::digest::Digest;
@@ -18,16 +19,17 @@ use crate::buffers::Buffers;
 use crate::document::kind_name;
 use crate::protocol::{BufferName, Shown, ShownField};
 use crate::values::entries;
-
-/// Meshes whose topology is remembered.
-const MOST_KNOWN: usize = 4096;
+use fields::{Hanger, Ranges};
+use memo::Memo;
 
 /// Makes pictures of results.
 pub struct Gallery {
     buffers: Arc<Buffers>,
     /// The topology's digest of each mesh seen, by the mesh's digest: whether a
     /// field fits is asked of many meshes that need not be loaded for it.
-    topologies: Mutex<BTreeMap<Digest, Digest>>,
+    topologies: Memo<Digest>,
+    /// Smallest and largest of the numbers of each digest.
+    ranges: Ranges,
     /// What was shown last, with its version.
     last: Mutex<Shown>,
 }
@@ -96,7 +98,7 @@ pub fn wanted(plan: &Plan, shown: Option<ResultRef>) -> Vec<ResultRef> {
 }
 
 /// The meshes that a node takes.
-fn mesh_inputs(plan: &Plan, node: usize) -> Vec<ResultRef> {
+pub(crate) fn mesh_inputs(plan: &Plan, node: usize) -> Vec<ResultRef> {
     let planned = &plan.nodes[node];
     let inputs = planned.spec.inputs.iter().zip(&planned.inputs);
     inputs
@@ -148,7 +150,8 @@ impl Gallery {
     pub fn new(buffers: Arc<Buffers>) -> Self {
         Self {
             buffers,
-            topologies: Mutex::default(),
+            topologies: Memo::default(),
+            ranges: Ranges::default(),
             last: Mutex::default(),
         }
     }
@@ -208,16 +211,21 @@ impl Gallery {
             _ => found.directions.as_ref(),
         };
         shown.directions = directions.map(|directions| mesh::directions(&self.buffers, directions));
+        let hanger = Hanger {
+            buffers: &self.buffers,
+            ranges: &self.ranges,
+        };
         let mut fields = Vec::new();
         for (node, name, field) in &found.fields {
-            fields.push(fields::of_node(&self.buffers, node, name, field, units));
+            fields.push(hanger.of_node(node, name, field, units));
         }
         let known = fields.iter().map(|field| field.label.clone());
         let exact = known.zip(&found.fields);
         let exact = exact.map(|(label, (_, _, field))| (label, Arc::clone(field)));
         let exact = exact.collect();
-        fields.extend(fields::attributes(&self.buffers, &mesh, &shown.node));
+        fields.extend(hanger.attributes(&mesh, &shown.node));
         shown.fields = distinct(fields);
+        self.prepare(&shown.fields);
         Subject {
             node: shown.node.clone(),
             units,
@@ -298,25 +306,35 @@ impl Gallery {
     /// The digest of a mesh's topology; the mesh is loaded only if it is new.
     fn topology_of(&self, evaluation: &Evaluation, mesh: ResultRef) -> Option<Digest> {
         let digest = evaluation.digest(mesh)?;
-        let known = || {
-            self.topologies
-                .lock()
-                .unwrap_or_else(PoisonError::into_inner)
-        };
-        if let Some(topology) = known().get(&digest) {
-            return Some(*topology);
+        self.topologies
+            .get(digest, || match evaluation.value(mesh) {
+                Some(Value::Mesh(mesh)) => Some(mesh.topology().digest()),
+                _ => None,
+            })
+    }
+
+    /// Has the fields made by which somebody coloured the last picture: they will
+    /// be asked for next.
+    fn prepare(&self, fields: &[ShownField]) {
+        let last = self.last.lock().unwrap_or_else(PoisonError::into_inner);
+        for field in fields {
+            let mut before = last.fields.iter();
+            let before = before.find(|before| before.name == field.name);
+            if before.is_some_and(|before| self.buffers.is_made(before.values)) {
+                self.buffers.prepare(field.values);
+            }
         }
-        let Some(Value::Mesh(mesh)) = evaluation.value(mesh) else {
-            return None;
-        };
-        // Not under the lock: hashing uses the thread pool.
-        let topology = mesh.topology().digest();
-        let mut known = known();
-        if known.len() >= MOST_KNOWN {
-            known.clear();
-        }
-        known.insert(digest, topology);
-        Some(topology)
+    }
+
+    /// Where pictures lie.
+    pub fn buffers(&self) -> &Buffers {
+        &self.buffers
+    }
+
+    /// The version of the picture that was told last.
+    pub fn version(&self) -> u64 {
+        let last = self.last.lock().unwrap_or_else(PoisonError::into_inner);
+        last.version
     }
 
     /// Gives a picture the version it is told under, and lets go of buffers that

@@ -33,6 +33,9 @@ use viewer::{Pictures, Viewer};
 /// The share of the cache's memory that buffers nobody names any more may take.
 const BUFFER_SHARE: u64 = 4;
 
+/// And more than this is of no use: they are made again in milliseconds.
+const MOST_BUFFERS: u64 = 512 << 20;
+
 /// Carries the command out.
 pub(crate) fn view(args: &ViewArgs, cx: &mut Context<'_, '_>) -> u8 {
     if let Some(status) = wrong_settings(args, cx) {
@@ -51,7 +54,8 @@ pub(crate) fn view(args: &ViewArgs, cx: &mut Context<'_, '_>) -> u8 {
         // Nobody may be listening any more.
         let _ = post.send(Message::Stop);
     });
-    let budget = usize::try_from(studio.memory() / BUFFER_SHARE).unwrap_or(usize::MAX);
+    let budget = (studio.memory() / BUFFER_SHARE).min(MOST_BUFFERS);
+    let budget = usize::try_from(budget).unwrap_or(usize::MAX);
     let (hub, buffers) = (Arc::new(Hub::default()), Arc::new(Buffers::new(budget)));
     let requests = Arc::new(Requests::new(mailbox.post()));
     let taking = Arc::clone(&requests);

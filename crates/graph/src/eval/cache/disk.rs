@@ -75,7 +75,7 @@ impl Disk {
             Err(error) if error.kind() != io::ErrorKind::NotFound => {
                 return Err(unusable(error.to_string()));
             }
-            _ => disk.keep(disk.replace(&root.join(TAG_FILE), &[tag.as_bytes()])),
+            _ => disk.keep(disk.replace(&root.join(TAG_FILE), &[tag.as_bytes()], true)),
         }
         Ok(disk)
     }
@@ -148,7 +148,8 @@ impl Disk {
             let header = frame::header(kind, address, cost, content);
             let bytes = (header.len() + content.len()) as u64;
             self.written.fetch_add(bytes, Ordering::Relaxed);
-            self.keep(self.replace(&self.path(kind, address), &[&header, content]));
+            let path = self.path(kind, address);
+            self.keep(self.replace(&path, &[&header, content], kind.is_lasting()));
         }
     }
 
@@ -172,8 +173,9 @@ impl Disk {
         }
     }
 
-    /// Writes `parts` to `path` so that it holds all of them or what it held.
-    fn replace(&self, path: &Path, parts: &[&[u8]]) -> io::Result<()> {
+    /// Writes `parts` to `path` so that it holds all of them or what it held; after
+    /// a power cut too if it is `lasting`.
+    fn replace(&self, path: &Path, parts: &[&[u8]], lasting: bool) -> io::Result<()> {
         let folder = path.parent().unwrap_or(&self.root);
         let temporary = folder.join(temporary_name());
         let attempt = || {
@@ -182,7 +184,9 @@ impl Disk {
                 .create_new(true)
                 .open(&temporary)?;
             parts.iter().try_for_each(|part| file.write_all(part))?;
-            file.sync_all()?;
+            if lasting {
+                file.sync_all()?;
+            }
             fs::rename(&temporary, path)
         };
         let result = match attempt() {

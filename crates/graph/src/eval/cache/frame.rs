@@ -48,6 +48,12 @@ impl FileKind {
         }
     }
 
+    /// Whether a file must outlast a power cut. What is known of the last run is
+    /// waited for in every run, and without it nothing but an explanation is lost.
+    pub(super) fn is_lasting(self) -> bool {
+        self != Self::LastRun
+    }
+
     fn tag(self) -> u32 {
         match self {
             Self::Entry => 1,
