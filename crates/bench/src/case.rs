@@ -82,12 +82,17 @@ pub struct Case<'a> {
 pub(crate) enum Role {
     Ours,
     Peer,
+    /// What our kernel needs at least in fresh memory.
     Limit,
+    /// What it needs at least in memory used before.
+    ReusedLimit,
 }
 
 struct Contestant<'a> {
     name: &'a str,
     role: Role,
+    /// Whether its memory is that of this process, so that it may be kept.
+    takes_our_memory: bool,
     run: Box<dyn FnMut(&ThreadPool) -> Sample + 'a>,
 }
 
@@ -98,6 +103,17 @@ struct Sample {
     wall: Duration,
     /// The most bytes held above what was held before.
     bytes: usize,
+}
+
+/// The best of our kernel's runs.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Runs {
+    /// On one thread, in pages the process has not touched before.
+    pub(crate) fresh: Option<Best>,
+    /// On one thread, in memory that earlier runs used.
+    pub(crate) reused: Option<Best>,
+    /// On two threads, in memory used before where that is possible.
+    pub(crate) both: Option<Best>,
 }
 
 /// The least of several runs.
@@ -118,6 +134,7 @@ impl<'a> Case<'a> {
         self.contestants.push(Contestant {
             name: "tessgraph",
             role: Role::Ours,
+            takes_our_memory: true,
             run: Box::new(move |pool| {
                 let input = prepare();
                 timed(|| pool.install(|| run(input)))
@@ -132,6 +149,7 @@ impl<'a> Case<'a> {
         self.contestants.push(Contestant {
             name: "tessgraph",
             role: Role::Ours,
+            takes_our_memory: false,
             run: Box::new(move |pool| process(&mut command(pool.current_num_threads()))),
         });
         self
@@ -175,13 +193,24 @@ impl<'a> Case<'a> {
             }
         };
         let run = Box::new(sample);
-        self.contestants.push(Contestant { name, role, run });
+        self.contestants.push(Contestant {
+            name,
+            role,
+            takes_our_memory: false,
+            run,
+        });
         self
     }
 
-    /// The least any program would need, from [`crate::limits`].
+    /// The least any program would need in fresh memory, from [`crate::limits`].
     pub fn limit<T>(self, name: &'a str, run: impl FnMut() -> T + 'a) -> Self {
         self.add(name, Role::Limit, run)
+    }
+
+    /// The least any program would need in memory used before, from
+    /// [`crate::limits`].
+    pub fn reused_limit<T>(self, name: &'a str, run: impl FnMut() -> T + 'a) -> Self {
+        self.add(name, Role::ReusedLimit, run)
     }
 
     /// Elements are bytes: the rate reads as MB/s.
@@ -194,6 +223,7 @@ impl<'a> Case<'a> {
         self.contestants.push(Contestant {
             name,
             role,
+            takes_our_memory: false,
             run: Box::new(move |_| timed(&mut run)),
         });
         self
@@ -206,8 +236,7 @@ impl<'a> Case<'a> {
         }
         let start = Instant::now();
         let [one, two] = &self.bench.pools;
-        let mut best: Vec<(Option<Best>, Option<Best>)> =
-            vec![(None, None); self.contestants.len()];
+        let mut best = vec![Runs::default(); self.contestants.len()];
         // The first run of all warms up memory and caches and does not count.
         if let Some(first) = self.contestants.first_mut() {
             (first.run)(one);
@@ -216,18 +245,25 @@ impl<'a> Case<'a> {
             if round >= 3 && start.elapsed() > PATIENCE {
                 break;
             }
-            for (contestant, (alone, both)) in self.contestants.iter_mut().zip(&mut best) {
-                better(alone, (contestant.run)(one));
+            for (contestant, best) in self.contestants.iter_mut().zip(&mut best) {
+                tessgraph_pages::keep_at_most(0);
+                better(&mut best.fresh, (contestant.run)(one));
+                if contestant.takes_our_memory {
+                    tessgraph_pages::keep_at_most(usize::MAX);
+                    if best.reused.is_none() {
+                        (contestant.run)(one);
+                    }
+                    better(&mut best.reused, (contestant.run)(one));
+                }
                 if contestant.role == Role::Ours {
-                    better(both, (contestant.run)(two));
+                    better(&mut best.both, (contestant.run)(two));
                 }
             }
         }
+        tessgraph_pages::keep_at_most(0);
         let mut row = Row::new(&self.kernel, self.count, self.unit, self.bytes_are_rate);
-        for (contestant, (alone, both)) in self.contestants.iter().zip(best) {
-            if let Some(alone) = alone {
-                row.add(contestant.name, contestant.role, alone, both);
-            }
+        for (contestant, runs) in self.contestants.iter().zip(best) {
+            row.add(contestant.name, contestant.role, runs);
         }
         row.print();
     }

@@ -5,17 +5,15 @@
     reason = "a benchmark prints its figures"
 )]
 
-use std::time::Duration;
-
-use crate::case::{Best, Role};
+use crate::case::{Best, Role, Runs};
 
 /// Prints the title and the head of the table.
 pub(crate) fn head(title: &str) {
     println!("\n### {title}\n");
     println!(
-        "| kernel | size | ns each | rate | bytes each | 2 threads: ns each, faster by | against peers | against the limit |"
+        "| kernel | size | ns each | in memory used before | rate | bytes each | 2 threads: ns each, faster by | against peers | against the limit |"
     );
-    println!("|---|---:|---:|---:|---:|---:|---|---|");
+    println!("|---|---:|---:|---:|---:|---:|---:|---|---|");
 }
 
 /// Says, beside the table, that somebody takes no part.
@@ -29,7 +27,7 @@ pub(crate) struct Row<'a> {
     count: usize,
     unit: &'static str,
     bytes_are_rate: bool,
-    ours: Option<(Best, Option<Best>)>,
+    ours: Runs,
     others: Vec<(&'a str, Role, Best)>,
 }
 
@@ -45,57 +43,68 @@ impl<'a> Row<'a> {
             count,
             unit,
             bytes_are_rate,
-            ours: None,
+            ours: Runs::default(),
             others: Vec::new(),
         }
     }
 
-    pub(crate) fn add(&mut self, name: &'a str, role: Role, alone: Best, both: Option<Best>) {
+    pub(crate) fn add(&mut self, name: &'a str, role: Role, runs: Runs) {
         if role == Role::Ours {
-            self.ours = Some((alone, both));
-        } else {
+            self.ours = runs;
+        } else if let Some(alone) = runs.fresh {
             self.others.push((name, role, alone));
         }
     }
 
     pub(crate) fn print(&self) {
-        let Some((alone, both)) = self.ours else {
+        let Some(fresh) = self.ours.fresh else {
             return;
         };
-        let each = |time: Duration| time.as_secs_f64() * 1e9 / self.count as f64;
-        let rate = self.count as f64 / alone.processor.as_secs_f64() / 1e6;
+        let reused = self.ours.reused.unwrap_or(fresh);
+        let each = |best: Best| best.processor.as_secs_f64() * 1e9 / self.count as f64;
+        let rate = self.count as f64 / reused.processor.as_secs_f64() / 1e6;
         let (rate_unit, digits) = if self.bytes_are_rate {
             ("MB/s", 0)
         } else {
             ("M/s", 2)
         };
-        let two = both.map_or(String::new(), |both| {
-            let faster = alone.wall.as_secs_f64() / both.wall.as_secs_f64();
-            format!("{}, {faster:.2}x", number(each(both.processor)))
+        let again = self
+            .ours
+            .reused
+            .map_or(String::new(), |it| number(each(it)));
+        let two = self.ours.both.map_or(String::new(), |both| {
+            let faster = reused.wall.as_secs_f64() / both.wall.as_secs_f64();
+            format!("{}, {faster:.2}x", number(each(both)))
         });
-        let against = |role: Role| {
-            let of_role = self.others.iter().filter(|(_, other, _)| *other == role);
-            let text = of_role.map(|(name, _, other)| {
-                let (ours, theirs) = (alone.processor.as_secs_f64(), other.processor.as_secs_f64());
-                let ratio = if role == Role::Peer {
-                    format!("{:.2}x as fast", theirs / ours)
-                } else {
-                    format!("{:.1}x its time", ours / theirs)
-                };
-                format!("{name} ({}): {ratio}", number(each(other.processor)))
-            });
-            text.collect::<Vec<_>>().join("; ")
-        };
         println!(
-            "| {} | {} {} | {} | {rate:.digits$} {rate_unit} | {} | {two} | {} | {} |",
+            "| {} | {} {} | {} | {again} | {rate:.digits$} {rate_unit} | {} | {two} | {} | {} |",
             self.kernel,
             grouped(self.count),
             self.unit,
-            number(each(alone.processor)),
-            number(alone.bytes as f64 / self.count as f64),
-            against(Role::Peer),
-            against(Role::Limit),
+            number(each(fresh)),
+            number(fresh.bytes as f64 / self.count as f64),
+            self.against(&[Role::Peer], fresh, reused),
+            self.against(&[Role::Limit, Role::ReusedLimit], fresh, reused),
         );
+    }
+
+    /// Our time beside that of the others who have one of these roles.
+    fn against(&self, roles: &[Role], fresh: Best, reused: Best) -> String {
+        let time = |best: Best| best.processor.as_secs_f64();
+        let of_role = self
+            .others
+            .iter()
+            .filter(|(_, role, _)| roles.contains(role));
+        let text = of_role.map(|&(name, role, other)| {
+            let ratio = match role {
+                Role::Peer => format!("{:.2}x as fast", time(other) / time(fresh)),
+                Role::ReusedLimit => format!("{:.1}x its time", time(reused) / time(other)),
+                _ => format!("{:.1}x its time", time(fresh) / time(other)),
+            };
+            let theirs = number(time(other) * 1e9 / self.count as f64);
+            format!("{name} ({theirs}): {ratio}")
+        });
+        text.collect::<Vec<_>>().join("; ")
     }
 }
 

@@ -44,7 +44,7 @@ fn main() {
                     },
                 )
                 .limit("first touch of the result", limits::first_touch(bytes))
-                .limit("streaming write of it", limits::streaming_write(bytes))
+                .reused_limit("streaming write of it", limits::streaming_write(bytes))
                 .run();
         }
     }

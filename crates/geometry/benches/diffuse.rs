@@ -57,7 +57,7 @@ fn main() {
             if kernel == "SmoothNormals, mean" {
                 case = case.outside("scipy", "diffuse", &arrays);
             }
-            case.limit("copying the field each pass", move || {
+            case.reused_limit("copying the field each pass", move || {
                 (0..PASSES).for_each(|_| pass());
             })
             .run();

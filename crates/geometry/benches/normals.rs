@@ -24,7 +24,7 @@ fn main() {
                         vertex_normals(&mesh, weights, true, &Unmonitored).expect("nobody stops it")
                     },
                 )
-                .limit("copying what is moved", limits::copy(moved / 2))
+                .reused_limit("copying what is moved", limits::copy(moved / 2))
                 .run();
         }
         let cold = || {

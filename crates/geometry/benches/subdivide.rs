@@ -35,6 +35,7 @@ fn main() {
                 )
                 .outside("opensubdiv", "subdivide", &arrays)
                 .limit("first touch of the result", limits::first_touch(bytes))
+                .reused_limit("streaming write of it", limits::streaming_write(bytes))
                 .run();
         }
     }

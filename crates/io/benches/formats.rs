@@ -105,7 +105,7 @@ fn reading(bench: &Bench, format: Format, kind: &str, bytes: &[u8], arrays: &Arr
                     Err(tobj::LoadError::OpenFileFailed)
                 })
             })
-            .limit("finding newlines", || {
+            .reused_limit("finding newlines", || {
                 memchr::memchr_iter(b'\n', bytes).count()
             }),
         Format::Stl => case
@@ -113,8 +113,8 @@ fn reading(bench: &Bench, format: Format, kind: &str, bytes: &[u8], arrays: &Arr
                 let mut cursor = std::io::Cursor::new(bytes);
                 stl_io::read_stl(&mut cursor)
             })
-            .limit("copying", limits::copy(bytes.len())),
-        _ => case.limit("copying", limits::copy(bytes.len())),
+            .reused_limit("copying", limits::copy(bytes.len())),
+        _ => case.reused_limit("copying", limits::copy(bytes.len())),
     };
     if format != Format::Glb {
         case = case.outside("meshlib", &work, arrays);
@@ -149,6 +149,6 @@ fn writing(
             stl_io::write_stl(&mut out, facets.iter())
         });
     }
-    case.limit("write() of the file", || sink(folder).write_all(&bytes))
+    case.reused_limit("write() of the file", || sink(folder).write_all(&bytes))
         .run();
 }

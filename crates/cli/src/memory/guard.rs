@@ -37,12 +37,15 @@ thread_local! {
     static LEAVING: Cell<bool> = const { Cell::new(false) };
 }
 
+/// Freed memory that is kept for the next pieces: the buffers of a model of some
+/// ten million vertices, which an edit makes anew while the old ones are shown.
+const KEPT: usize = 1 << 30;
+
 /// Sets the limit in bytes.
 pub(crate) fn set_limit(bytes: u64) {
-    LIMIT.store(
-        usize::try_from(bytes).unwrap_or(usize::MAX),
-        Ordering::Relaxed,
-    );
+    let limit = usize::try_from(bytes).unwrap_or(usize::MAX);
+    LIMIT.store(limit, Ordering::Relaxed);
+    tessgraph_pages::keep_at_most(KEPT.min(limit / 4));
 }
 
 /// The limit in bytes.
