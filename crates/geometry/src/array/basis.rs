@@ -53,15 +53,6 @@ impl Weights {
         }
     }
 
-    /// Weighted sum of the grid's values.
-    #[inline]
-    pub(super) fn sum<T>(&self, values: &[T]) -> T
-    where
-        T: Copy + std::ops::Add<Output = T> + std::ops::Mul<f64, Output = T>,
-    {
-        self.sum_by(|at| values[at])
-    }
-
     /// Weighted sum of what `value` says of each place in the grid.
     #[inline]
     pub(super) fn sum_by<T>(&self, value: impl Fn(usize) -> T) -> T
@@ -102,6 +93,8 @@ pub(super) struct Basis {
     pub(super) component: u32,
     pub(super) side: u32,
     pub(super) points: Vec<BasisPoint>,
+    /// The same weights and heights, each in a row of its own.
+    pub(super) rows: Rows,
 }
 
 impl Basis {
@@ -114,10 +107,80 @@ impl Basis {
             uv: p.truncate(),
             height: p.z * factor,
         });
+        let points: Vec<_> = points.collect();
         Self {
             component,
             side,
-            points: points.collect(),
+            rows: Rows::new(&points),
+            points,
+        }
+    }
+}
+
+/// [`BasisPoint`]s for loops over many of them: what is of one kind in one row.
+pub(super) struct Rows {
+    pub(super) place: WeightRows,
+    pub(super) direction: WeightRows,
+    pub(super) height: Vec<f64>,
+}
+
+impl Rows {
+    fn new(points: &[BasisPoint]) -> Self {
+        Self {
+            place: WeightRows::new(points.iter().map(|point| &point.place)),
+            direction: WeightRows::new(points.iter().map(|point| &point.direction)),
+            height: points.iter().map(|point| point.height).collect(),
+        }
+    }
+}
+
+/// The [`Weights`] of all points of a component.
+pub(super) struct WeightRows {
+    at: [Vec<u32>; 4],
+    weight: [Vec<f64>; 4],
+}
+
+impl WeightRows {
+    fn new<'a>(weights: impl Iterator<Item = &'a Weights> + Clone) -> Self {
+        Self {
+            at: std::array::from_fn(|k| weights.clone().map(|w| w.at[k]).collect()),
+            weight: std::array::from_fn(|k| weights.clone().map(|w| w.weight[k]).collect()),
+        }
+    }
+
+    /// [`Weights::sum_by`] of the points from `first` on, one for each slot, of `N`
+    /// values at each place: they go through the weights together.
+    #[inline(always)]
+    pub(super) fn sum<const N: usize>(
+        &self,
+        first: usize,
+        values: [&[f64]; N],
+        out: [&mut [f64]; N],
+    ) {
+        let Some(count) = out.first().map(|row| row.len()) else {
+            return;
+        };
+        let range = first..first + count;
+        let [p, q, r, s] = self.weight.each_ref().map(|row| &row[range.clone()]);
+        let out = out.map(|row| &mut row[..count]);
+        // A grid of a single face has the same four values for all points.
+        if values.iter().all(|values| values.len() == 4) {
+            let corners = values.map(|values| [values[0], values[1], values[2], values[3]]);
+            for k in 0..count {
+                for n in 0..N {
+                    let [a, b, c, d] = corners[n];
+                    out[n][k] = (a * p[k] + b * q[k]) + (c * r[k] + d * s[k]);
+                }
+            }
+            return;
+        }
+        let at = self.at.each_ref().map(|row| &row[range.clone()]);
+        for k in 0..count {
+            let at = at.map(|row| row[k] as usize);
+            for n in 0..N {
+                let [a, b, c, d] = at.map(|place| values[n][place]);
+                out[n][k] = (a * p[k] + b * q[k]) + (c * r[k] + d * s[k]);
+            }
         }
     }
 }
@@ -135,7 +198,7 @@ mod tests {
                 .flat_map(|j| (0..=side).map(move |i| DVec2::new(i.into(), j.into())))
                 .map(|place| place / f64::from(side))
                 .collect();
-            prop_assert!((weights.sum(&grid) - DVec2::new(u, v)).length() < 1e-12);
+            prop_assert!((weights.sum_by(|at| grid[at]) - DVec2::new(u, v)).length() < 1e-12);
             prop_assert!((weights.weight.iter().sum::<f64>() - 1.0).abs() < 1e-9);
         }
     }

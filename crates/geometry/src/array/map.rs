@@ -1,16 +1,21 @@
 //! The mapping itself: X = P(u, v) + w s k D(u', v').
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use glam::{DVec2, DVec3};
 
-use super::basis::{Basis, BasisPoint};
+use super::basis::Basis;
 use super::layout::Layout;
+use super::patch::Patch;
 use super::{ArrayOptions, Interpolation, Piece, is_relative};
 use crate::fields::vertex_means;
+use crate::mesh::are_finite;
 use crate::normals::{NormalWeights, vertex_normals};
+use crate::vectors::widened;
 use crate::{Amount, Directions, Domain, GeometryError, Mesh, Monitor, math, parallel};
 
 /// A point of the array about to be displaced.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub struct ArrayPoint {
     /// Its vertex in the array, before neighbours are joined.
     pub vertex: u32,
@@ -61,19 +66,20 @@ impl Displace for Straight {
 
 /// Base and components, prepared for the loop over all output vertices.
 pub(super) struct Map<'a> {
-    base: &'a Mesh,
-    layout: &'a Layout<'a>,
+    pub(super) base: &'a Mesh,
+    pub(super) layout: &'a Layout<'a>,
     pub(super) bases: Vec<Basis>,
     /// The basis of each placement.
     pub(super) basis_of: Vec<u32>,
-    outward: Vectors,
+    pub(super) outward: Vectors,
     /// `None` where both sides are the same.
-    inward: Option<Vectors>,
+    pub(super) inward: Option<Vectors>,
     /// sqrt(A) per base vertex for relative heights.
-    size: Option<Vec<f64>>,
-    scale: Option<&'a Amount>,
+    pub(super) size: Option<Vec<f64>>,
+    /// Factors that vary over the base.
+    pub(super) scale: Option<&'a Amount>,
     /// Vertex normals, where the displacement wants them.
-    normals: Option<Vec<DVec3>>,
+    pub(super) normals: Option<Vec<DVec3>>,
 }
 
 /// Directions in the form that is interpolated.
@@ -98,42 +104,6 @@ impl Vectors {
     }
 }
 
-/// Base values under one placement, gathered from the mesh.
-#[derive(Default)]
-struct Patch {
-    grid: Vec<u32>,
-    positions: Vec<DVec3>,
-    outward: PatchVectors,
-    inward: PatchVectors,
-    size: Vec<f64>,
-    scale: Vec<f64>,
-    normals: Vec<DVec3>,
-}
-
-#[derive(Default)]
-struct PatchVectors {
-    directions: Vec<DVec3>,
-    lengths: Vec<f64>,
-}
-
-impl PatchVectors {
-    fn gather(&mut self, grid: &[u32], vectors: &Vectors) {
-        gather(&mut self.directions, grid, &vectors.directions);
-        if let Some(lengths) = &vectors.lengths {
-            gather(&mut self.lengths, grid, lengths);
-        }
-    }
-
-    #[inline]
-    fn at(&self, point: &BasisPoint) -> DVec3 {
-        let sum = point.direction.sum(&self.directions);
-        if self.lengths.is_empty() {
-            return sum;
-        }
-        with_length(sum, point.direction.sum(&self.lengths))
-    }
-}
-
 /// A sum of unit vectors made that long; zero where they cancel out.
 #[inline]
 pub(super) fn with_length(sum: DVec3, length: f64) -> DVec3 {
@@ -147,12 +117,7 @@ pub(super) fn with_length(sum: DVec3, length: f64) -> DVec3 {
 }
 
 /// Unit directions whose interpolation is shorter have cancelled out.
-const CANCELLED: f64 = 1e-9;
-
-fn gather<T: Copy>(out: &mut Vec<T>, grid: &[u32], values: &[T]) {
-    out.clear();
-    out.extend(grid.iter().map(|&vertex| values[vertex as usize]));
-}
+pub(super) const CANCELLED: f64 = 1e-9;
 
 impl<'a> Map<'a> {
     pub(super) fn new(
@@ -221,7 +186,8 @@ impl<'a> Map<'a> {
         (self.outward, self.inward)
     }
 
-    /// Positions of all output vertices, before neighbours are joined.
+    /// Positions of all output vertices, before neighbours are joined; all of
+    /// them are finite.
     pub(super) fn positions<D: Displace + ?Sized>(
         &self,
         displace: &D,
@@ -230,75 +196,37 @@ impl<'a> Map<'a> {
         let starts = &self.layout.vertex_starts;
         let count = starts.last().map_or(0, |&count| count as usize);
         let mut out: Vec<DVec3> = parallel::zeroed(count);
+        let overflows = AtomicBool::new(false);
         parallel::fill_runs(
             &mut out,
             starts,
             monitor,
             Patch::default,
             |patch, run, slots| {
-                self.gather(run, patch);
+                patch.gather(self, run);
                 let basis = &self.bases[self.basis_of[run] as usize];
-                let face = self.layout.placements[run].cell;
-                for ((slot, point), vertex) in
-                    slots.iter_mut().zip(&basis.points).zip(starts[run]..)
-                {
-                    let mut at = self.point(patch, point);
-                    (at.vertex, at.face) = (vertex, face);
-                    *slot = at.position + at.direction * displace.height(&at);
-                }
+                let first = ArrayPoint {
+                    vertex: starts[run],
+                    face: self.layout.placements[run].cell,
+                    ..ArrayPoint::default()
+                };
+                widened(
+                    #[inline(always)]
+                    || {
+                        patch.place(basis, first, displace, slots);
+                        if !are_finite(slots) {
+                            overflows.store(true, Ordering::Relaxed);
+                        }
+                    },
+                );
             },
         )?;
+        if overflows.into_inner()
+            && let Some(vertex) = out.iter().position(|point| !point.is_finite())
+        {
+            return Err(GeometryError::NonFiniteVertex { vertex });
+        }
         Ok(out)
-    }
-
-    fn gather(&self, placement: usize, patch: &mut Patch) {
-        self.layout.grid(placement, &mut patch.grid);
-        gather(&mut patch.positions, &patch.grid, self.base.positions());
-        patch.outward.gather(&patch.grid, &self.outward);
-        if let Some(inward) = &self.inward {
-            patch.inward.gather(&patch.grid, inward);
-        }
-        if let Some(size) = &self.size {
-            gather(&mut patch.size, &patch.grid, size);
-        }
-        if let Some(normals) = &self.normals {
-            gather(&mut patch.normals, &patch.grid, normals);
-        }
-        if let Some(scale) = self.scale {
-            patch.scale.clear();
-            let values = patch.grid.iter().map(|&vertex| scale.at(vertex as usize));
-            patch.scale.extend(values);
-        }
-    }
-
-    #[inline]
-    fn point(&self, patch: &Patch, point: &BasisPoint) -> ArrayPoint {
-        let mut height = point.height;
-        if self.size.is_some() {
-            height *= point.place.sum(&patch.size);
-        }
-        if self.scale.is_some() {
-            height *= point.place.sum(&patch.scale);
-        }
-        let side = if height < 0.0 && self.inward.is_some() {
-            &patch.inward
-        } else {
-            &patch.outward
-        };
-        let normal = if self.normals.is_some() {
-            math::unit_or_zero(point.place.sum(&patch.normals))
-        } else {
-            DVec3::ZERO
-        };
-        ArrayPoint {
-            normal,
-            vertex: 0,
-            face: 0,
-            uv: point.uv,
-            height,
-            position: point.place.sum(&patch.positions),
-            direction: side.at(point),
-        }
     }
 }
 

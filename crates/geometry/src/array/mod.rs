@@ -7,6 +7,7 @@ mod grids;
 mod layout;
 mod map;
 mod parts;
+mod patch;
 mod per_vertex;
 mod replicate;
 #[cfg(test)]

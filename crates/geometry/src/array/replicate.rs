@@ -13,7 +13,8 @@ use crate::{
     parallel,
 };
 
-/// The output mesh of `positions`, with faces and all that components carry.
+/// The output mesh of `positions`, which are finite, with faces and all that
+/// components carry.
 pub(super) fn replicate(
     base: &Mesh,
     pieces: &[Piece],
@@ -22,7 +23,7 @@ pub(super) fn replicate(
     monitor: &dyn Monitor,
 ) -> Result<Mesh, GeometryError> {
     let topology = topology(pieces, layout, positions.len(), monitor)?;
-    let mut mesh = Mesh::new(positions, Arc::new(topology))?
+    let mut mesh = Mesh::of_finite(positions, Arc::new(topology))?
         .with_materials(labels(pieces, layout, Mesh::materials, monitor)?)?
         .with_groups(labels(pieces, layout, Mesh::groups, monitor)?)?
         .with_objects(labels(pieces, layout, Mesh::objects, monitor)?)?;
@@ -75,7 +76,7 @@ fn topology(
             }
         },
     )?;
-    Topology::new(vertex_count, offsets, corners)
+    Topology::of_sound(vertex_count, offsets, corners)
 }
 
 /// Every attribute some component has, in order of first appearance, except

@@ -73,14 +73,32 @@ impl Mesh {
     /// when the counts differ.
     pub fn new(positions: Vec<DVec3>, topology: Arc<Topology>) -> Result<Self, GeometryError> {
         check_positions(&positions, &topology)?;
-        Ok(Self {
+        Ok(Self::of(positions, topology))
+    }
+
+    /// [`Mesh::new`] for positions that are known to be finite: they are not
+    /// looked at again.
+    ///
+    /// # Errors
+    /// As [`Mesh::new`] for another count of them.
+    pub(crate) fn of_finite(
+        positions: Vec<DVec3>,
+        topology: Arc<Topology>,
+    ) -> Result<Self, GeometryError> {
+        check_position_count(&positions, &topology)?;
+        debug_assert!(are_finite(&positions), "finite positions");
+        Ok(Self::of(positions, topology))
+    }
+
+    fn of(positions: Vec<DVec3>, topology: Arc<Topology>) -> Self {
+        Self {
             positions: positions.into(),
             topology,
             attributes: Vec::new(),
             materials: Labels::default(),
             groups: Labels::default(),
             objects: Labels::default(),
-        })
+        }
     }
 
     /// A mesh from coordinate triples and faces given as lists of vertices.
@@ -314,25 +332,33 @@ impl Mesh {
     }
 }
 
-fn check_positions(positions: &[DVec3], topology: &Topology) -> Result<(), GeometryError> {
-    if positions.len() != topology.vertex_count() {
-        return Err(GeometryError::AttributeLength {
-            name: "position".into(),
-            domain: Domain::Vertex,
-            expected: topology.vertex_count(),
-            actual: positions.len(),
-        });
+fn check_position_count(positions: &[DVec3], topology: &Topology) -> Result<(), GeometryError> {
+    if positions.len() == topology.vertex_count() {
+        return Ok(());
     }
-    // Without an early end, so that it runs at the speed of memory.
-    let finite = |_, positions: &[DVec3]| {
-        let all = positions.iter().flat_map(|position| position.to_array());
-        all.fold(true, |finite, x| finite & x.is_finite())
-    };
-    if parallel::all(positions, finite) {
+    Err(GeometryError::AttributeLength {
+        name: "position".into(),
+        domain: Domain::Vertex,
+        expected: topology.vertex_count(),
+        actual: positions.len(),
+    })
+}
+
+fn check_positions(positions: &[DVec3], topology: &Topology) -> Result<(), GeometryError> {
+    check_position_count(positions, topology)?;
+    if parallel::all(positions, |_, positions| are_finite(positions)) {
         return Ok(());
     }
     match positions.iter().position(|position| !position.is_finite()) {
         Some(vertex) => Err(GeometryError::NonFiniteVertex { vertex }),
         None => Ok(()),
     }
+}
+
+/// Whether all coordinates are finite. Looks at all of them without an early
+/// end, so that it runs at the speed of memory.
+#[inline(always)]
+pub(crate) fn are_finite(positions: &[DVec3]) -> bool {
+    let all = positions.iter().flat_map(|position| position.to_array());
+    all.fold(true, |finite, x| finite & x.is_finite())
 }

@@ -159,7 +159,9 @@ pub fn subdivide(
         return unrefined(mesh, positions, &refiner, monitor);
     }
     let blocks = refiner.blocks();
-    let topology = Topology::uniform(refiner.vertex_count(), 4, blocks.corners(monitor)?)?;
+    let corners = blocks.corners(monitor)?;
+    let offsets = Topology::even_offsets(corners.len(), 4)?;
+    let topology = Topology::of_sound(refiner.vertex_count(), offsets, corners)?;
     let fine = Mesh::new(positions, Arc::new(topology))?;
     let fine = attributes::inherit(mesh, fine, &refiner, &blocks, monitor)?;
     let side = 1usize << options.levels;

@@ -43,32 +43,46 @@ impl Topology {
         offsets: Vec<u32>,
         corners: Vec<u32>,
     ) -> Result<Self, GeometryError> {
-        let limit = u128::from(u32::MAX - 1);
-        for (what, count) in [("vertices", vertex_count), ("corners", corners.len())] {
-            if count as u128 > limit {
-                return Err(GeometryError::TooMany {
-                    what,
-                    count: count as u128,
-                    limit,
-                });
-            }
-        }
-        if offsets.first() != Some(&0) || offsets.last().map(|&n| n as usize) != Some(corners.len())
-        {
-            return Err(GeometryError::Invalid(
-                "face offsets do not span the corners".into(),
-            ));
-        }
+        check_counts(vertex_count, &offsets, &corners)?;
         if !are_faces(vertex_count, &offsets, &corners) {
             check_faces(vertex_count, &offsets, &corners)?;
         }
-        Ok(Self {
+        Ok(Self::of(vertex_count, offsets.into(), corners.into()))
+    }
+
+    /// [`Topology::new`] for faces that are known to be sound, because they were
+    /// made from sound ones: they are not looked at again.
+    ///
+    /// # Errors
+    /// As [`Topology::new`] where there are too many.
+    pub(crate) fn of_sound(
+        vertex_count: usize,
+        offsets: Vec<u32>,
+        corners: Vec<u32>,
+    ) -> Result<Self, GeometryError> {
+        check_counts(vertex_count, &offsets, &corners)?;
+        debug_assert!(are_faces(vertex_count, &offsets, &corners), "sound faces");
+        Ok(Self::of(vertex_count, offsets.into(), corners.into()))
+    }
+
+    fn of(vertex_count: usize, offsets: Buffer<u32>, corners: Buffer<u32>) -> Self {
+        Self {
             vertex_count,
-            offsets: offsets.into(),
-            corners: corners.into(),
+            offsets,
+            corners,
             adjacency: OnceLock::new(),
             boundary_loops: OnceLock::new(),
             digest: OnceLock::new(),
+        }
+    }
+
+    /// Where faces of `sides` corners start that have `corner_count` together.
+    pub(crate) fn even_offsets(
+        corner_count: usize,
+        sides: usize,
+    ) -> Result<Vec<u32>, GeometryError> {
+        parallel::map(corner_count / sides + 1, &Unmonitored, |face| {
+            (face * sides) as u32
         })
     }
 
@@ -81,9 +95,11 @@ impl Topology {
         sides: usize,
         corners: Vec<u32>,
     ) -> Result<Self, GeometryError> {
-        let count = corners.len() / sides + 1;
-        let offsets = parallel::map(count, &Unmonitored, |face| (face * sides) as u32)?;
-        Self::new(vertex_count, offsets, corners)
+        Self::new(
+            vertex_count,
+            Self::even_offsets(corners.len(), sides)?,
+            corners,
+        )
     }
 
     /// The same faces of other vertices, whose offsets are shared.
@@ -99,14 +115,7 @@ impl Topology {
         if !are_faces(vertex_count, &self.offsets, &corners) {
             check_faces(vertex_count, &self.offsets, &corners)?;
         }
-        Ok(Self {
-            vertex_count,
-            offsets: self.offsets.clone(),
-            corners: corners.into(),
-            adjacency: OnceLock::new(),
-            boundary_loops: OnceLock::new(),
-            digest: OnceLock::new(),
-        })
+        Ok(Self::of(vertex_count, self.offsets.clone(), corners.into()))
     }
 
     /// How many vertices the faces may name; some may be isolated.
@@ -295,6 +304,31 @@ impl Topology {
             None => Ok(()),
         }
     }
+}
+
+/// Whether 32-bit indices can name everything, and the offsets end where the
+/// corners do.
+fn check_counts(
+    vertex_count: usize,
+    offsets: &[u32],
+    corners: &[u32],
+) -> Result<(), GeometryError> {
+    let limit = u128::from(u32::MAX - 1);
+    for (what, count) in [("vertices", vertex_count), ("corners", corners.len())] {
+        if count as u128 > limit {
+            return Err(GeometryError::TooMany {
+                what,
+                count: count as u128,
+                limit,
+            });
+        }
+    }
+    if offsets.first() != Some(&0) || offsets.last().map(|&n| n as usize) != Some(corners.len()) {
+        return Err(GeometryError::Invalid(
+            "face offsets do not span the corners".into(),
+        ));
+    }
+    Ok(())
 }
 
 /// Whether every face has three corners or more, and every corner a vertex. Looks
