@@ -20,10 +20,10 @@ pub const CHUNK: usize = 4096;
 /// [`GeometryError::Cancelled`] when `monitor` asks to stop.
 pub fn map<T, F>(count: usize, monitor: &dyn Monitor, f: F) -> Result<Vec<T>, GeometryError>
 where
-    T: Send + Clone + Default,
+    T: Send + Zeroable,
     F: Fn(usize) -> T + Sync,
 {
-    let mut out = vec![T::default(); count];
+    let mut out = zeroed(count);
     fill(&mut out, monitor, |i, slot| *slot = f(i))?;
     Ok(out)
 }

@@ -7,7 +7,7 @@ use crate::{GeometryError, Mesh, Monitor, parallel};
 
 /// How far one face is from planar; the conventions differ by up to four times
 /// on one quad.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, bytemuck::Zeroable)]
 pub struct Planarity {
     /// Largest distance of a corner to the plane with the least squared
     /// distances, in metres.

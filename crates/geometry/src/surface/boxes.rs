@@ -17,7 +17,7 @@ pub(crate) struct BoxTree {
 }
 
 /// Four boxes side by side; places without one have an empty box.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, bytemuck::Zeroable)]
 struct Four {
     low: [Lanes; 3],
     high: [Lanes; 3],

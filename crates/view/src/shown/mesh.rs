@@ -113,7 +113,7 @@ fn triples(vectors: &[DVec3], origin: DVec3) -> Bytes {
 }
 
 /// `f(index)` for all indices, in parallel.
-pub(crate) fn all<T: Send + Clone + Default>(
+pub(crate) fn all<T: Send + bytemuck::Zeroable>(
     count: usize,
     f: impl Fn(usize) -> T + Sync,
 ) -> Vec<T> {

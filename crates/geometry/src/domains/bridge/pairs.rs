@@ -81,15 +81,11 @@ pub(super) fn nearest(
     let mut pairs = Vec::new();
     loop {
         // Who lost the nearest one looks again.
-        let stale = |k: usize| free[k] && best[k].is_none_or(|other| !free[other]);
-        let found = parallel::map(borders.len(), monitor, |k| {
-            if stale(k) {
-                nearest_to(&borders, &free, k, reach)
-            } else {
-                best[k]
+        parallel::fill(&mut best, monitor, |k, nearest| {
+            if free[k] && nearest.is_none_or(|other| !free[other]) {
+                *nearest = nearest_to(&borders, &free, k, reach);
             }
         })?;
-        best = found;
         let before = pairs.len();
         for a in 0..borders.len() {
             if let Some(b) = best[a]
