@@ -6,7 +6,7 @@ use glam::{DAffine3, DMat3, DVec3};
 
 use crate::math::{cos, sin, unit_or_zero};
 use crate::mesh::{Attribute, AttributeValues, Domain};
-use crate::{GeometryError, Mesh, Topology};
+use crate::{GeometryError, Mesh, Monitor, Topology, parallel};
 
 /// Attribute that holds unit normals, on vertices, faces or corners.
 pub const NORMAL: &str = "normal";
@@ -82,23 +82,29 @@ fn check_angles(angles: &[f64]) -> Result<(), GeometryError> {
 /// Attributes named [`NORMAL`] turn along and keep unit length (zero where the
 /// map flattens them away); all others stay. A map that mirrors also flips the
 /// faces, as [`flip_faces`] does, so that outside stays outside. Without that
-/// the faces are shared with the given mesh. Cost: O(size).
+/// the faces are shared with the given mesh. Cost: O(size), in parallel.
 ///
 /// # Errors
 /// [`GeometryError::NonFiniteVertex`] when a coordinate overflows, or the map
-/// itself is not finite.
+/// itself is not finite; [`GeometryError::Cancelled`].
 ///
 /// ```
-/// use tessgraph_geometry::{glam::{DAffine3, DVec3}, measure::measure_mesh};
+/// use tessgraph_geometry::{Unmonitored, glam::{DAffine3, DVec3}, measure::measure_mesh};
 /// use tessgraph_geometry::{primitives::cuboid, transform::transform};
 /// let mirror = DAffine3::from_scale(DVec3::new(-1.0, 1.0, 1.0));
-/// let mirrored = transform(&cuboid(DVec3::ONE, [1, 1, 1], false)?, mirror)?;
+/// let mirrored = transform(&cuboid(DVec3::ONE, [1, 1, 1], false)?, mirror, &Unmonitored)?;
 /// assert_eq!(measure_mesh(&mirrored).volume, Some(1.0));
 /// # Ok::<(), tessgraph_geometry::GeometryError>(())
 /// ```
-pub fn transform(mesh: &Mesh, world_from_local: DAffine3) -> Result<Mesh, GeometryError> {
-    let place = |p: &DVec3| world_from_local.transform_point3(*p);
-    let mut moved = mesh.with_positions(mesh.positions().iter().map(place).collect())?;
+pub fn transform(
+    mesh: &Mesh,
+    world_from_local: DAffine3,
+    monitor: &dyn Monitor,
+) -> Result<Mesh, GeometryError> {
+    let places = mesh.positions();
+    let mut moved = mesh.with_positions(parallel::map(places.len(), monitor, |vertex| {
+        world_from_local.transform_point3(places[vertex])
+    })?)?;
     let linear = world_from_local.matrix3;
     let mirrors = linear.determinant() < 0.0;
     // Cofactors turn area vectors, even where the map has no inverse; a mirror
@@ -111,12 +117,11 @@ pub fn transform(mesh: &Mesh, world_from_local: DAffine3) -> Result<Mesh, Geomet
     for attribute in mesh.attributes() {
         if let (NORMAL, AttributeValues::Vector3(normals)) = (attribute.name(), attribute.values())
         {
-            let turned = normals
-                .iter()
-                .map(|&n| unit_or_zero(cofactors * n))
-                .collect();
-            moved =
-                moved.with_attribute(attribute.with_values(AttributeValues::Vector3(turned)))?;
+            let turned = parallel::map(normals.len(), monitor, |index| {
+                unit_or_zero(cofactors * normals[index])
+            })?;
+            let turned = AttributeValues::Vector3(turned.into());
+            moved = moved.with_attribute(attribute.with_values(turned))?;
         }
     }
     if mirrors {
@@ -227,7 +232,11 @@ mod tests {
     #[test]
     fn a_mirror_keeps_corner_0_and_outside() {
         let mesh = brick();
-        let mirrored = transform(&mesh, DAffine3::from_scale(DVec3::new(1.0, -1.0, 1.0)));
+        let mirrored = transform(
+            &mesh,
+            DAffine3::from_scale(DVec3::new(1.0, -1.0, 1.0)),
+            &Unmonitored,
+        );
         let mirrored = mirrored.expect("finite");
         for face in 0..mesh.face_count() {
             let [a, b, c, d] = [0, 1, 2, 3].map(|k| mesh.face(face)[k]);
@@ -304,18 +313,27 @@ mod tests {
 
     #[test]
     fn flattening_gives_no_nan() {
-        let flat = transform(&brick(), DAffine3::from_scale(DVec3::new(1.0, 1.0, 0.0)));
+        let flat = transform(
+            &brick(),
+            DAffine3::from_scale(DVec3::new(1.0, 1.0, 0.0)),
+            &Unmonitored,
+        );
         let flat = flat.expect("finite");
         assert!(normals(&flat).iter().all(|n| n.is_finite()));
         let bottom = normals(&flat)[0];
         assert_eq!(bottom, -DVec3::Z);
-        let nothing = transform(&brick(), DAffine3::from_scale(DVec3::ZERO)).expect("finite");
+        let nothing =
+            transform(&brick(), DAffine3::from_scale(DVec3::ZERO), &Unmonitored).expect("finite");
         assert!(normals(&nothing).iter().all(|&n| n == DVec3::ZERO));
     }
 
     #[test]
     fn maps_that_are_not_finite_are_refused() {
-        let huge = transform(&brick(), DAffine3::from_scale(DVec3::splat(1e308)));
+        let huge = transform(
+            &brick(),
+            DAffine3::from_scale(DVec3::splat(1e308)),
+            &Unmonitored,
+        );
         assert!(matches!(huge, Err(GeometryError::NonFiniteVertex { .. })));
         assert!(rotation_about(DVec3::ZERO, 1.0).is_err());
         assert!(rotation_by(DVec3::new(0.0, f64::NAN, 0.0)).is_err());
@@ -330,7 +348,7 @@ mod tests {
         ) {
             let turn = rotation_by(angles.into()).expect("finite");
             let map = placement(scale.into(), turn, DVec3::ONE, shift.into());
-            let moved = transform(&brick(), map).expect("finite");
+            let moved = transform(&brick(), map, &Unmonitored).expect("finite");
             let volume = measure_mesh(&moved).volume.expect("closed");
             let expected = 6.0 * (scale[0] * scale[1] * scale[2]).abs();
             prop_assert!((volume / expected - 1.0).abs() < 1e-9, "{} {}", volume, expected);

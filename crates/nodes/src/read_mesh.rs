@@ -109,7 +109,11 @@ impl Node for ReadMesh {
         if place == DAffine3::IDENTITY {
             return Ok(Arc::new(loaded.mesh));
         }
-        Ok(Arc::new(transform::transform(&loaded.mesh, place)?))
+        Ok(Arc::new(transform::transform(
+            &loaded.mesh,
+            place,
+            cx.monitor(),
+        )?))
     }
 }
 

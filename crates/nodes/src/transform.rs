@@ -39,13 +39,14 @@ pub(crate) struct Transform {
 impl Node for Transform {
     type Output = Arc<Mesh>;
 
-    fn eval(self, _: &EvalCx<'_>) -> Result<Self::Output, NodeError> {
+    fn eval(self, cx: &EvalCx<'_>) -> Result<Self::Output, NodeError> {
         let rotation = transform::rotation_by(self.rotate)?;
         let world_from_local =
             transform::placement(self.scale, rotation, self.pivot, self.translate);
         Ok(Arc::new(transform::transform(
             &self.mesh,
             world_from_local,
+            cx.monitor(),
         )?))
     }
 }
