@@ -93,15 +93,7 @@ impl Field {
     ///
     /// Cost: O(values), in parallel.
     pub fn range(&self) -> Option<(f64, f64)> {
-        let wider =
-            |(low, high): (f64, f64), (least, most): (f64, f64)| (low.min(least), high.max(most));
-        let nothing = || (f64::INFINITY, f64::NEG_INFINITY);
-        let one = |found, index: usize| {
-            let value = self.values[index];
-            wider(found, (value, value))
-        };
-        let found = parallel::reduce(self.values.len(), nothing, one, wider);
-        (!self.values.is_empty()).then_some(found)
+        parallel::range(self.values.len(), |index| self.values[index])
     }
 
     /// The same field with every value multiplied: a change of units.

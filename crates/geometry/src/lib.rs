@@ -32,6 +32,7 @@ pub mod primitives;
 pub mod random;
 mod rebuild;
 pub mod section;
+mod sets;
 pub mod subdivide;
 pub mod surface;
 pub mod target;

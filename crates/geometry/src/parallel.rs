@@ -268,6 +268,19 @@ where
     chunks.into_iter().fold(start(), merge)
 }
 
+/// The smallest and the largest of `take(i)` for `i` in `0..count`; `None` of
+/// none.
+pub fn range(count: usize, take: impl Fn(usize) -> f64 + Sync) -> Option<(f64, f64)> {
+    let wider =
+        |(low, high): (f64, f64), (least, most): (f64, f64)| (low.min(least), high.max(most));
+    let nothing = || (f64::INFINITY, f64::NEG_INFINITY);
+    let one = |found, index: usize| {
+        let number = take(index);
+        wider(found, (number, number))
+    };
+    (count > 0).then(|| reduce(count, nothing, one, wider))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

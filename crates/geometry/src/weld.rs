@@ -262,33 +262,11 @@ pub(crate) fn clusters(
     Ok(lowest)
 }
 
-/// Disjoint sets whose root is always the lowest member.
-pub(crate) struct Sets(Vec<u32>);
-
-impl Sets {
-    pub(crate) fn new(count: usize) -> Self {
-        Self((0..count as u32).collect())
-    }
-
-    pub(crate) fn root(&mut self, mut i: u32) -> u32 {
-        while self.0[i as usize] != i {
-            let up = self.0[self.0[i as usize] as usize];
-            self.0[i as usize] = up;
-            i = up;
-        }
-        i
-    }
-
-    pub(crate) fn join(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.root(a), self.root(b));
-        self.0[a.max(b) as usize] = a.min(b);
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::Unmonitored;
+    use crate::sets::Sets;
     use proptest::prelude::*;
 
     fn brute(positions: &[DVec3], distance: f64) -> Vec<u32> {

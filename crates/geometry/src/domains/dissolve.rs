@@ -4,8 +4,8 @@ use super::pieces::Pieces;
 use crate::math::angle_between;
 use crate::normals::face_normals;
 use crate::rebuild::keep_faces;
+use crate::sets::Sets;
 use crate::topology::{NO_EDGE, next_in_face};
-use crate::weld::Sets;
 use crate::{Attribute, AttributeValues, Domain, GeometryError, Mesh, Monitor, Topology};
 
 /// A mesh after edges were dissolved.

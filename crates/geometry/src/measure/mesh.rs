@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::defects::{Defects, Found, find_defects};
 use crate::parallel::{self, in_order};
+use crate::sets::Sets;
 use crate::{GeometryError, Mesh, Monitor, Topology};
 
 /// What there is to say about a mesh in numbers; see [`measure_mesh`].
@@ -159,41 +160,6 @@ fn boundary_pieces(topology: &Topology) -> usize {
         }
     }
     sets.count_roots(|vertex| on_boundary[vertex])
-}
-
-/// Disjoint sets of vertices; the lowest vertex of a set represents it.
-struct Sets {
-    parents: Vec<u32>,
-}
-
-impl Sets {
-    fn new(count: usize) -> Self {
-        Self {
-            parents: (0..count as u32).collect(),
-        }
-    }
-
-    fn root(&mut self, mut vertex: u32) -> u32 {
-        while self.parents[vertex as usize] != vertex {
-            let above = self.parents[self.parents[vertex as usize] as usize];
-            self.parents[vertex as usize] = above;
-            vertex = above;
-        }
-        vertex
-    }
-
-    fn join(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.root(a), self.root(b));
-        self.parents[a.max(b) as usize] = a.min(b);
-    }
-
-    /// How many sets are represented by a vertex that `holds`.
-    fn count_roots(&self, holds: impl Fn(usize) -> bool) -> usize {
-        let parents = self.parents.iter().enumerate();
-        parents
-            .filter(|&(vertex, &parent)| parent as usize == vertex && holds(vertex))
-            .count()
-    }
 }
 
 /// Area of all triangles, and the volume they enclose if they enclose one:

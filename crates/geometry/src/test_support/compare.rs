@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use glam::DVec3;
 
 use crate::Mesh;
-use crate::weld::Sets;
+use crate::sets::Sets;
 
 /// Asserts equal counts, a one-to-one match of vertices within `tolerance` times
 /// the bounding box's diagonal, and equal faces as cyclic lists of matched

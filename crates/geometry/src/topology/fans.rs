@@ -1,7 +1,7 @@
 //! How the faces round a vertex hang together.
 
 use super::{NO_EDGE, Topology, next_in_face};
-use crate::weld::Sets;
+use crate::sets::Sets;
 
 /// Edges a vertex may have before finding its fans needs the heap.
 const USUAL_VALENCE: usize = 32;

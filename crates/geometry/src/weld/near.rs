@@ -2,8 +2,9 @@
 
 use glam::DVec3;
 
-use super::{Sets, coincident};
+use super::coincident;
 use crate::parallel::{self, CHUNK, in_order};
+use crate::sets::Sets;
 use crate::{GeometryError, Monitor};
 
 /// The sets of all positions that chains of pairs within `distance` lead
@@ -19,7 +20,7 @@ pub(super) fn sets(
     if let Some(sets) = spread_out(positions, distance, monitor)? {
         return Ok(sets);
     }
-    let mut sets = Sets(coincident::lowest(positions, monitor)?);
+    let mut sets = Sets::of_roots(coincident::lowest(positions, monitor)?);
     join_crowded(positions, distance, &mut sets, monitor)?;
     Ok(sets)
 }
@@ -257,7 +258,7 @@ mod tests {
                 DVec3::new(moved(0), moved(1), moved(2)) * distance + far
             }).collect();
             let roots = |mut sets: Sets| (0..count as u32).map(|i| sets.root(i)).collect::<Vec<_>>();
-            let mut crowded = Sets(coincident::lowest(&places, &Unmonitored).unwrap());
+            let mut crowded = Sets::of_roots(coincident::lowest(&places, &Unmonitored).unwrap());
             join_crowded(&places, distance, &mut crowded, &Unmonitored).unwrap();
             // `None` where they are crowded, or too far away for the distance.
             if let Some(sets) = spread_out(&places, distance, &Unmonitored).unwrap() {

@@ -104,7 +104,10 @@ impl Hanger<'_> {
     }
 
     fn range(&self, values: &Numbers) -> (f64, f64) {
-        let find = || Some(range(values.len(), |index| values.at(index)));
+        let find = || {
+            let range = parallel::range(values.len(), |index| values.at(index));
+            Some(range.unwrap_or((0.0, 0.0)))
+        };
         let kind = matches!(values, Numbers::Whole(_)).into();
         let content = source("range", &[values.digest()]).number(kind).finish();
         self.ranges.get(content, find).unwrap_or_default()
@@ -140,19 +143,6 @@ fn domain_name(domain: Domain) -> &'static str {
         Domain::Face => "face",
         Domain::Corner => "corner",
     }
-}
-
-/// The smallest and the largest of some numbers; zeros if there are none.
-fn range(count: usize, take: impl Fn(usize) -> f64 + Sync) -> (f64, f64) {
-    let wider =
-        |(low, high): (f64, f64), (other, another): (f64, f64)| (low.min(other), high.max(another));
-    let nothing = || (f64::INFINITY, f64::NEG_INFINITY);
-    let one = |found, index| {
-        let number = take(index);
-        wider(found, (number, number))
-    };
-    let found = parallel::reduce(count, nothing, one, wider);
-    if count == 0 { (0.0, 0.0) } else { found }
 }
 
 #[cfg(test)]
