@@ -155,17 +155,21 @@ impl WeightRows {
         &self,
         first: usize,
         values: [&[f64]; N],
-        out: [&mut [f64]; N],
+        mut out: [&mut [f64]; N],
     ) {
         let Some(count) = out.first().map(|row| row.len()) else {
             return;
         };
-        let range = first..first + count;
-        let [p, q, r, s] = self.weight.each_ref().map(|row| &row[range.clone()]);
-        let out = out.map(|row| &mut row[..count]);
+        for row in &mut out {
+            *row = &mut std::mem::take(row)[..count];
+        }
+        let [p, q, r, s] = part(&self.weight, first, count);
         // A grid of a single face has the same four values for all points.
         if values.iter().all(|values| values.len() == 4) {
-            let corners = values.map(|values| [values[0], values[1], values[2], values[3]]);
+            let mut corners = [[0.0; 4]; N];
+            for (corners, values) in corners.iter_mut().zip(values) {
+                corners.copy_from_slice(values);
+            }
             for k in 0..count {
                 for n in 0..N {
                     let [a, b, c, d] = corners[n];
@@ -174,15 +178,28 @@ impl WeightRows {
             }
             return;
         }
-        let at = self.at.each_ref().map(|row| &row[range.clone()]);
+        let at = part(&self.at, first, count);
         for k in 0..count {
-            let at = at.map(|row| row[k] as usize);
             for n in 0..N {
-                let [a, b, c, d] = at.map(|place| values[n][place]);
+                let value = |corner: usize| values[n][at[corner][k] as usize];
+                let (a, b, c, d) = (value(0), value(1), value(2), value(3));
                 out[n][k] = (a * p[k] + b * q[k]) + (c * r[k] + d * s[k]);
             }
         }
     }
+}
+
+/// The same part of four rows. Written one by one: the closure of a `map` would
+/// not be compiled for wide vectors.
+#[inline(always)]
+fn part<T>([a, b, c, d]: &[Vec<T>; 4], first: usize, count: usize) -> [&[T]; 4] {
+    let end = first + count;
+    [
+        &a[first..end],
+        &b[first..end],
+        &c[first..end],
+        &d[first..end],
+    ]
 }
 
 #[cfg(test)]

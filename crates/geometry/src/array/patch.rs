@@ -162,8 +162,9 @@ impl Triples {
     /// The sums of `count` points from `first` on.
     #[inline(always)]
     fn sum(&self, weights: &WeightRows, first: usize, count: usize, out: &mut Triple) {
-        let values = self.0.each_ref().map(Vec::as_slice);
-        weights.sum(first, values, out.each_mut().map(|row| &mut row[..count]));
+        let ([x, y, z], [to_x, to_y, to_z]) = (&self.0, out);
+        let out = [&mut to_x[..count], &mut to_y[..count], &mut to_z[..count]];
+        weights.sum(first, [x, y, z], out);
     }
 }
 
@@ -185,7 +186,7 @@ impl PatchVectors {
             return;
         };
         weights.sum(first, [values], [&mut *lengths]);
-        let [x, y, z] = out.each_mut().map(|row| &mut row[..lengths.len()]);
+        let [x, y, z] = out;
         for (k, length) in lengths.iter().enumerate() {
             let now = (x[k] * x[k] + y[k] * y[k] + z[k] * z[k]).sqrt();
             let factor = length / now;
