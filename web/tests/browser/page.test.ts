@@ -1,42 +1,17 @@
 // The page in a real browser, against the real server.
 import assert from "node:assert/strict";
 import { readFileSync, readdirSync, writeFileSync } from "node:fs";
-import { after, afterEach, before, test } from "node:test";
-import type { Browser } from "playwright-core";
-import { eventually, launch, LivePage, Workshop } from "./support.ts";
+import { test } from "node:test";
+import { Bench, eventually, LivePage } from "./support.ts";
 
-let browser: Browser;
-let workshop: Workshop;
-let live: LivePage | undefined;
-
-before(async () => {
-  browser = await launch();
-});
-after(async () => {
-  await browser.close();
-});
-afterEach(async () => {
-  await live?.close();
-  live = undefined;
-  await workshop.clear();
-});
-
-/** A server and a settled page on one of the shipped graphs. */
-async function open(graph: string): Promise<{ page: LivePage; file: string }> {
-  workshop = new Workshop();
-  const server = await workshop.serve(graph);
-  live = await LivePage.open(browser, server.address);
-  await live.settled();
-  return { page: live, file: workshop.path(graph) };
-}
+const bench = new Bench();
 
 test("every shipped graph opens and is drawn", async () => {
-  workshop = new Workshop();
-  const names = ["graphs", "graphs/figures"].flatMap((folder) => readdirSync(workshop.path(folder)).filter((n) => n.endsWith(".ron")).map((n) => `${folder}/${n}`));
+  const names = ["graphs", "graphs/figures"].flatMap((folder) => readdirSync(bench.workshop.path(folder)).filter((n) => n.endsWith(".ron")).map((n) => `${folder}/${n}`));
   assert.ok(names.length >= 18, `${names.length} graphs`);
   for (const name of names) {
-    const server = await workshop.serve(name);
-    const page = await LivePage.open(browser, server.address);
+    const server = await bench.workshop.serve(name);
+    const page = await LivePage.open(bench.browser, server.address);
     await page.settled();
     assert.match(await page.counts(), /^[1-9][\d\u202f]* faces/, name);
     const drawn = await page.picture();
@@ -49,7 +24,7 @@ test("every shipped graph opens and is drawn", async () => {
 });
 
 test("a slider changes counts, picture and one value of the file", async () => {
-  const { page, file } = await open("graphs/facade.ron");
+  const { page, file } = await bench.open("graphs/facade.ron");
   const source = readFileSync(file, "utf8");
   const counts = await page.counts();
   const picture = await page.picture();
@@ -65,7 +40,7 @@ test("a slider changes counts, picture and one value of the file", async () => {
 });
 
 test("a box takes millimetres and writes the file's unit", async () => {
-  const { page, file } = await open("graphs/facade.ron");
+  const { page, file } = await bench.open("graphs/facade.ron");
   const source = readFileSync(file, "utf8");
   const box = page.page.locator('.parameter[data-name="thickness"] input.box');
   await box.fill("300 mm");
@@ -78,7 +53,7 @@ test("a box takes millimetres and writes the file's unit", async () => {
 });
 
 test("arrow keys move a slider by steps and write once", async () => {
-  const { page, file } = await open("graphs/facade.ron");
+  const { page, file } = await bench.open("graphs/facade.ron");
   const source = readFileSync(file, "utf8");
   const slider = page.page.locator('.parameter[data-name="smooth"] input[type=range]');
   await slider.focus();
@@ -90,7 +65,7 @@ test("arrow keys move a slider by steps and write once", async () => {
 });
 
 test("a broken file shows its error and the last good picture, marked; mended it is good", async () => {
-  const { page, file } = await open("graphs/facade.ron");
+  const { page, file } = await bench.open("graphs/facade.ron");
   const source = readFileSync(file, "utf8");
   writeFileSync(file, source.replace("SubdivideQuad(", "SubdivideQuat("));
   await page.chip(/^Stale: 1 error \(line \d+\)/);
@@ -111,7 +86,7 @@ test("a broken file shows its error and the last good picture, marked; mended it
 });
 
 test("a click on a node shows its result, its inputs and its page", async () => {
-  const { page } = await open("graphs/facade.ron");
+  const { page } = await bench.open("graphs/facade.ron");
   const counts = await page.counts();
   await page.page.locator('.graph-picture .node[data-node="surface"]').click();
   await eventually("another mesh is shown", async () => (await page.counts()) !== counts);
@@ -123,7 +98,7 @@ test("a click on a node shows its result, its inputs and its page", async () => 
 });
 
 test("a click on the model reads out a face, a second one a vertex; Esc lets go", async () => {
-  const { page } = await open("graphs/facade.ron");
+  const { page } = await bench.open("graphs/facade.ron");
   await page.page.locator('.graph-picture .node[data-node="surface"]').click();
   await eventually("the surface is shown", async () => /256 faces/.test(await page.counts()));
   await page.settled();
@@ -145,7 +120,7 @@ test("a click on the model reads out a face, a second one a vertex; Esc lets go"
 });
 
 test("a panel is hidden and comes back", async () => {
-  const { page } = await open("graphs/figures/figure_03.ron");
+  const { page } = await bench.open("graphs/figures/figure_03.ron");
   const before = await page.picture();
   const box = await page.page.locator(".stage canvas").boundingBox();
   assert.ok(box);
@@ -159,7 +134,7 @@ test("a panel is hidden and comes back", async () => {
 });
 
 test("a saved picture is a PNG named after file and node", async () => {
-  const { page } = await open("graphs/torus.ron");
+  const { page } = await bench.open("graphs/torus.ron");
   const saving = page.page.waitForEvent("download");
   await page.page.keyboard.press("s");
   const download = await saving;
@@ -170,11 +145,8 @@ test("a saved picture is a PNG named after file and node", async () => {
 });
 
 test("the camera stays across updates, reloads and a killed server", async () => {
-  workshop = new Workshop();
-  const first = await workshop.serve("graphs/torus.ron");
-  live = await LivePage.open(browser, first.address);
-  await live.settled();
-  const page = live;
+  const first = await bench.workshop.serve("graphs/torus.ron");
+  const page = await bench.page(first.address);
   const corner = await page.picture();
   await page.page.keyboard.press("7");
   await page.changes(corner, "a look from above");
@@ -186,31 +158,27 @@ test("the camera stays across updates, reloads and a killed server", async () =>
   await first.kill();
   await page.chip(/^Disconnected/);
   await page.becomes(top, "the picture stays without a server");
-  await workshop.serve("graphs/torus.ron", { port: first.port, token: first.token });
+  await bench.workshop.serve("graphs/torus.ron", { port: first.port, token: first.token });
   await page.chip(/^Up to date/);
   await page.becomes(top, "the same picture from the next server");
   assert.deepEqual(page.complaints, []);
 });
 
 test("a server with a new address is told apart from one that is gone", async () => {
-  workshop = new Workshop();
-  const first = await workshop.serve("graphs/torus.ron");
-  live = await LivePage.open(browser, first.address);
-  await live.settled();
+  const first = await bench.workshop.serve("graphs/torus.ron");
+  const live = await bench.page(first.address);
   await first.kill();
-  await workshop.serve("graphs/torus.ron", { port: first.port, token: "f".repeat(32) });
+  await bench.workshop.serve("graphs/torus.ron", { port: first.port, token: "f".repeat(32) });
   await live.chip(/new address/);
 });
 
 test("names and texts of a file are shown as text, whatever they say", async () => {
-  workshop = new Workshop();
   const evil = "<script>window.harmed=1</script><img src=x onerror=window.harmed=2>";
-  const graph = workshop.path("graphs/<b>evil.ron");
+  const graph = bench.workshop.path("graphs/<b>evil.ron");
   const about = JSON.stringify(evil);
   writeFileSync(graph, `Graph(version: 1, params: {"width": Number(default: 1, min: 0.1, max: 3, about: ${about}), "label": Text(default: ${about})}, nodes: {"grid": Grid(cells: [4, 4], size: ["width", 1])}, outputs: {"out/grid.obj": "grid"})\n`);
-  const server = await workshop.serve("graphs/<b>evil.ron");
-  live = await LivePage.open(browser, server.address);
-  await live.settled();
+  const server = await bench.workshop.serve("graphs/<b>evil.ron");
+  const live = await bench.page(server.address);
   assert.equal(await live.page.locator('.parameter[data-name="label"] input').inputValue(), evil);
   assert.match((await live.page.locator('.parameter[data-name="width"] label').getAttribute("title")) ?? "", /<script>/);
   assert.equal(await live.page.locator(".topbar .file").innerText(), "<b>evil.ron");
@@ -222,7 +190,7 @@ test("names and texts of a file are shown as text, whatever they say", async () 
 });
 
 test("colours, legend, section, directions and edges change the picture", async () => {
-  const { page } = await open("graphs/facade.ron");
+  const { page } = await bench.open("graphs/facade.ron");
   let last = await page.picture();
   const changed = async (what: string): Promise<void> => {
     await page.changes(last, what);
@@ -248,7 +216,7 @@ test("colours, legend, section, directions and edges change the picture", async 
 });
 
 test("a lost graphics context comes back with the same picture", async () => {
-  const { page } = await open("graphs/torus.ron");
+  const { page } = await bench.open("graphs/torus.ron");
   const before = await page.picture();
   await page.page.evaluate(async () => {
     const canvas = document.querySelector<HTMLCanvasElement>(".stage canvas");
@@ -264,7 +232,7 @@ test("a lost graphics context comes back with the same picture", async () => {
 });
 
 test("everything is reached by Tab, and the sheet of keys opens and closes", async () => {
-  const { page } = await open("graphs/facade.ron");
+  const { page } = await bench.open("graphs/facade.ron");
   const reached = new Set<string>();
   for (let i = 0; i < 120; i += 1) {
     await page.page.keyboard.press("Tab");
@@ -289,7 +257,7 @@ test("everything is reached by Tab, and the sheet of keys opens and closes", asy
 });
 
 test("a hundred updates leave memory as it was", async () => {
-  const { page } = await open("graphs/facade.ron");
+  const { page } = await bench.open("graphs/facade.ron");
   const devtools = await page.page.context().newCDPSession(page.page);
   const heap = async (): Promise<number> => {
     await devtools.send("HeapProfiler.collectGarbage");

@@ -3,46 +3,21 @@ import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
 import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { networkInterfaces } from "node:os";
-import { after, afterEach, before, test } from "node:test";
-import type { Browser } from "playwright-core";
-import { eventually, launch, LivePage, program, Workshop } from "./support.ts";
+import { test } from "node:test";
+import { Bench, eventually, LivePage, program } from "./support.ts";
 
-let browser: Browser;
-let workshop: Workshop;
-let live: LivePage | undefined;
-
-before(async () => {
-  browser = await launch();
-});
-after(async () => {
-  await browser.close();
-});
-afterEach(async () => {
-  await live?.close();
-  live = undefined;
-  await workshop.clear();
-});
-
-async function open(graph: string): Promise<{ page: LivePage; address: string; file: string }> {
-  workshop = new Workshop();
-  const { address } = await workshop.serve(graph);
-  live = await LivePage.open(browser, address);
-  await live.settled();
-  return { page: live, address, file: workshop.path(graph) };
-}
+const bench = new Bench();
 
 /** A graph of one box, 2 by 2 by 1 metres. */
+const BOX =
+  'Graph(version: 1, params: {"height": Number(default: 1, min: 0.5, max: 3)}, nodes: {"box": Cuboid(size: [2, 2, "height"], cells: [4, 4, 2])}, outputs: {"out/box.obj": "box"})\n';
+
 async function openBox(): Promise<LivePage> {
-  workshop = new Workshop();
-  writeFileSync(workshop.path("graphs/box.ron"), 'Graph(version: 1, params: {"height": Number(default: 1, min: 0.5, max: 3)}, nodes: {"box": Cuboid(size: [2, 2, "height"], cells: [4, 4, 2])}, outputs: {"out/box.obj": "box"})\n');
-  const { address } = await workshop.serve("graphs/box.ron");
-  live = await LivePage.open(browser, address);
-  await live.settled();
-  return live;
+  return (await bench.open("graphs/box.ron", BOX)).page;
 }
 
 test("a copied link opens the same view, section and pick", async () => {
-  const { page, address } = await open("graphs/facade.ron");
+  const { page, address } = await bench.open("graphs/facade.ron");
   const box = await page.page.locator(".stage canvas").boundingBox();
   assert.ok(box);
   await page.page.keyboard.press("7");
@@ -57,7 +32,7 @@ test("a copied link opens the same view, section and pick", async () => {
   assert.ok(link.startsWith(`${address}#view=`), link);
   await page.page.keyboard.press("Escape");
   const picture = await page.picture();
-  const other = await LivePage.open(browser, link);
+  const other = await LivePage.open(bench.browser, link);
   try {
     await other.settled();
     await other.page.locator(".readout strong").filter({ hasText: title }).waitFor();
@@ -71,17 +46,17 @@ test("a copied link opens the same view, section and pick", async () => {
 });
 
 test("an offline page shows the model without a server", async () => {
-  const { page } = await open("graphs/torus.ron");
+  const { page } = await bench.open("graphs/torus.ron");
   const picture = await page.picture();
   await page.page.keyboard.press("Shift+S");
   const saving = page.page.waitForEvent("download");
   await page.page.getByRole("button", { name: "Save one file" }).click();
   const download = await saving;
   assert.equal(download.suggestedFilename(), "torus.html");
-  const path = workshop.path("torus.html");
+  const path = bench.workshop.path("torus.html");
   await download.saveAs(path);
-  await workshop.stop();
-  const offline = await LivePage.open(browser, `file://${path}`);
+  await bench.workshop.stop();
+  const offline = await LivePage.open(bench.browser, `file://${path}`);
   try {
     await offline.chip(/^Offline page/);
     await offline.page.waitForFunction(() => document.querySelector(".stage")?.hasAttribute("data-version"));
@@ -97,17 +72,15 @@ test("an offline page shows the model without a server", async () => {
 
 test("a phone is paired by its code, looks on, and is sent away", async (t) => {
   const isIn = Object.values(networkInterfaces()).some((addresses) => addresses?.some(({ family, internal }) => family === "IPv4" && !internal));
-  workshop = new Workshop();
   if (!isIn) return t.skip("this machine is in no network");
-  const { address } = await workshop.serve("graphs/torus.ron", { more: ["--lan"] });
-  live = await LivePage.open(browser, address);
-  await live.settled();
+  const { address } = await bench.workshop.serve("graphs/torus.ron", { more: ["--lan"] });
+  const live = await bench.page(address);
   await live.page.keyboard.press("Shift+S");
   await live.page.getByRole("button", { name: "Make an address at" }).click();
   await live.page.locator(".qr path").waitFor();
   const url = await live.page.locator('.pairings input[aria-label="Address for device 1"]').inputValue();
   assert.doesNotMatch(url, /127\.0\.0\.1|localhost/);
-  const phone = await LivePage.open(browser, url, { width: 390, height: 844 });
+  const phone = await LivePage.open(bench.browser, url, { width: 390, height: 844 });
   try {
     await phone.settled();
     await phone.chip(/Read only \(shared\)/);
@@ -155,7 +128,7 @@ test("a section is filled where the body is closed, dragged, and measured on", a
 });
 
 test("a rectangle selects panels, which are hidden and come back", async () => {
-  const { page } = await open("graphs/figures/figure_03.ron");
+  const { page } = await bench.open("graphs/figures/figure_03.ron");
   const before = await page.picture();
   const box = await page.page.locator(".stage canvas").boundingBox();
   assert.ok(box);
@@ -173,7 +146,7 @@ test("a rectangle selects panels, which are hidden and come back", async () => {
 
 test("B is seen while its key is held, and never written", async () => {
   const page = await openBox();
-  const file = workshop.path("graphs/box.ron");
+  const file = bench.workshop.path("graphs/box.ron");
   const reset = page.page.locator('.parameter[data-name="height"] .reset');
   const box = page.page.locator('.parameter[data-name="height"] input.box');
   await box.fill("3");
@@ -194,7 +167,7 @@ test("B is seen while its key is held, and never written", async () => {
 });
 
 test("a picture carries its parameters", async () => {
-  const { page } = await open("graphs/torus.ron");
+  const { page } = await bench.open("graphs/torus.ron");
   const saving = page.page.waitForEvent("download");
   await page.page.keyboard.press("s");
   const text = readFileSync(await (await saving).path()).toString("latin1");
@@ -203,7 +176,7 @@ test("a picture carries its parameters", async () => {
 });
 
 test("an end of the legend is dragged, and the colours follow", async () => {
-  const { page } = await open("graphs/facade.ron");
+  const { page } = await bench.open("graphs/facade.ron");
   await page.page.keyboard.press("c");
   await page.page.locator(".legend").waitFor();
   await page.page.waitForTimeout(500);
@@ -221,9 +194,8 @@ test("an end of the legend is dragged, and the colours follow", async () => {
 });
 
 test("without WebGL2 the server draws, and parameters go on", async () => {
-  workshop = new Workshop();
-  const { address } = await workshop.serve("graphs/torus.ron");
-  const context = await browser.newContext({ viewport: { width: 1280, height: 800 } });
+  const { address } = await bench.workshop.serve("graphs/torus.ron");
+  const context = await bench.browser.newContext({ viewport: { width: 1280, height: 800 } });
   await context.addInitScript(`HTMLCanvasElement.prototype.getContext = new Proxy(HTMLCanvasElement.prototype.getContext, {
     apply: (target, canvas, given) => (given[0].startsWith("webgl") ? null : Reflect.apply(target, canvas, given)),
   });`);
@@ -243,16 +215,14 @@ test("without WebGL2 the server draws, and parameters go on", async () => {
 });
 
 test("a study shows the pictures of its variants", async () => {
-  workshop = new Workshop();
-  writeFileSync(workshop.path("graphs/torus_study.ron"), 'Study(version: 1, graph: "torus.ron", axes: {"n": Values(of: [1, 2])}, keep: [])\n');
-  const out = workshop.path("graphs/out/torus_study");
+  writeFileSync(bench.workshop.path("graphs/torus_study.ron"), 'Study(version: 1, graph: "torus.ron", axes: {"n": Values(of: [1, 2])}, keep: [])\n');
+  const out = bench.workshop.path("graphs/out/torus_study");
   mkdirSync(`${out}/variants/v-b`, { recursive: true });
   writeFileSync(`${out}/results.csv`, "id,n,area\nv-a,1,4.5\nv-b,2,3.5\n");
-  const drawn = spawnSync(program(), ["render", workshop.path("graphs/torus.ron"), "-o", `${out}/variants/v-b/torus.png`, "--size", "300x200", "--cache", workshop.path("cache")]);
+  const drawn = spawnSync(program(), ["render", bench.workshop.path("graphs/torus.ron"), "-o", `${out}/variants/v-b/torus.png`, "--size", "300x200", "--cache", bench.workshop.path("cache")]);
   assert.equal(drawn.status, 0, drawn.stderr.toString());
-  const { address } = await workshop.serve("graphs/torus.ron");
-  live = await LivePage.open(browser, address);
-  await live.settled();
+  const { address } = await bench.workshop.serve("graphs/torus.ron");
+  const live = await bench.page(address);
   await live.page.getByRole("tab", { name: /^Study/ }).click();
   const picture = live.page.locator(".study-pictures img");
   assert.equal(await picture.count(), 1);
@@ -263,13 +233,11 @@ test("a study shows the pictures of its variants", async () => {
 });
 
 test("two hundred parameters are found by a search", async () => {
-  workshop = new Workshop();
   const names = Array.from({ length: 200 }, (_, i) => `${["roof", "wall", "edge", "bay"][i % 4]}_${i}`);
   const parameters = names.map((name) => `"${name}": Number(default: 1, min: 0, max: 2)`).join(", ");
-  writeFileSync(workshop.path("graphs/many.ron"), `Graph(version: 1, params: {${parameters}}, nodes: {"grid": Grid(cells: [2, 2], size: ["wall_1", 1])}, outputs: {"out/grid.obj": "grid"})\n`);
-  const { address } = await workshop.serve("graphs/many.ron");
-  live = await LivePage.open(browser, address);
-  await live.settled();
+  writeFileSync(bench.workshop.path("graphs/many.ron"), `Graph(version: 1, params: {${parameters}}, nodes: {"grid": Grid(cells: [2, 2], size: ["wall_1", 1])}, outputs: {"out/grid.obj": "grid"})\n`);
+  const { address } = await bench.workshop.serve("graphs/many.ron");
+  const live = await bench.page(address);
   assert.equal(await live.page.locator(".parameters details.group").count(), 4);
   await live.page.getByRole("searchbox", { name: "Search parameters" }).fill("wall_1");
   const seen = live.page.locator(".parameter:visible");

@@ -1,9 +1,10 @@
 // A real server on a copy of the shipped graphs, and a real browser in front of it.
 import assert from "node:assert/strict";
 import { type ChildProcess, spawn } from "node:child_process";
-import { cpSync, existsSync, mkdtempSync, rmSync, statSync } from "node:fs";
+import { cpSync, existsSync, mkdtempSync, rmSync, statSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
+import { after, afterEach, before } from "node:test";
 import { fileURLToPath } from "node:url";
 import { type Browser, chromium, type Page } from "playwright-core";
 
@@ -99,6 +100,11 @@ export class Server {
       });
     });
     return new Server(child, address);
+  }
+
+  /** The number of its process. */
+  get process(): number {
+    return this.child.pid ?? 0;
   }
 
   get port(): number {
@@ -206,6 +212,52 @@ export class LivePage {
     await this.page.mouse.down();
     for (let i = 1; i <= 5; i += 1) await this.page.mouse.move(x(from + ((to - from) * i) / 5), y);
     await this.page.mouse.up();
+  }
+}
+
+/** A browser for the tests of a file, and for each of them a folder of its own; all are let go of in time. */
+export class Bench {
+  private started: Browser | undefined;
+  private folder: Workshop | undefined;
+  private pages: LivePage[] = [];
+
+  constructor() {
+    before(async () => {
+      this.started = await launch();
+    });
+    after(() => this.browser.close());
+    afterEach(async () => {
+      await Promise.all(this.pages.splice(0).map((page) => page.close()));
+      await this.folder?.clear();
+      this.folder = undefined;
+    });
+  }
+
+  get browser(): Browser {
+    assert.ok(this.started);
+    return this.started;
+  }
+
+  /** The folder of the test that runs. */
+  get workshop(): Workshop {
+    this.folder ??= new Workshop();
+    return this.folder;
+  }
+
+  /** A page that has settled. */
+  async page(address: string): Promise<LivePage> {
+    const page = await LivePage.open(this.browser, address);
+    this.pages.push(page);
+    await page.settled();
+    return page;
+  }
+
+  /** A server and a settled page on one of the shipped graphs, or on one of this text. */
+  async open(graph: string, text?: string): Promise<{ page: LivePage; address: string; file: string }> {
+    const file = this.workshop.path(graph);
+    if (text !== undefined) writeFileSync(file, text);
+    const { address } = await this.workshop.serve(graph);
+    return { page: await this.page(address), address, file };
   }
 }
 
