@@ -114,6 +114,7 @@ static IMPURE: &[NodeSpec] = &[NodeSpec {
         quantity: Quantity::Number,
         faults: None,
     }],
+    preview: tessgraph_graph::node::Preview::NONE,
     eval: |_, _| Ok(vec![Value::Integer(CALLS.fetch_add(1, Ordering::Relaxed))]),
 }];
 

@@ -26,6 +26,7 @@ import { Stage } from "./stage.ts";
 import { ColourTool } from "./tools/colours.ts";
 import { Faults } from "./tools/faults.ts";
 import { PickTool } from "./tools/pick.ts";
+import { PreviewTool } from "./tools/preview.ts";
 import { SectionTool } from "./tools/section.ts";
 import { savePage } from "./tools/save.ts";
 import { captionLines, compose, download, pictureTexts } from "./tools/screenshot.ts";
@@ -54,6 +55,7 @@ export class App {
   private readonly colours: ColourTool | undefined;
   private readonly pick: PickTool | undefined;
   private section: SectionTool | undefined;
+  private readonly preview: PreviewTool | undefined;
 
   constructor(
     private readonly store: Store,
@@ -91,6 +93,7 @@ export class App {
       get: () => this.look.preferences.live,
       set: (live) => this.look.setPreference({ live }),
     });
+    this.preview = viewer ? new PreviewTool(store, viewer, this.parameters.root) : undefined;
     const checks = new ChecksPanel(store, (node) => this.show(node));
     this.details = new DetailsPanel(store, { show, openSource });
     this.graph = new GraphPanel(store, { show, openSource, describe: (node) => this.details.describe(node) });
@@ -139,7 +142,14 @@ export class App {
     });
     const { viewer } = this.stage;
     if (viewer) viewer.onPicture = (times) => this.finishPicture(times);
-    const { pick } = this;
+    const { pick, preview } = this;
+    if (preview) {
+      preview.onState = (state) => this.topbar.setPreview(state);
+      preview.showResult = () => {
+        const shown = store.get("shown");
+        if (shown) void this.showPicture(shown);
+      };
+    }
     if (!pick) return;
     this.stage.root.append(pick.rectangle);
     pick.onBoxing = (boxing) => {
@@ -228,6 +238,8 @@ export class App {
 
   private async showPicture(shown: Shown): Promise<void> {
     const arrived = performance.now();
+    // The hand at a slider sees what it does; the result comes when it lets go.
+    if (this.preview?.keeps()) return;
     const before = this.look.view.node;
     if (this.restoreShown && before) {
       this.restoreShown = false;
@@ -252,7 +264,7 @@ export class App {
     this.topbar.setColours(colours.choices, colours.current);
     this.arrived = arrived;
     try {
-      await viewer.show(shown, field);
+      if (await viewer.show(shown, field)) this.preview?.end();
     } catch (error) {
       this.banner.say("error", `The picture could not be made: ${error instanceof Error ? error.message : String(error)}`);
     }

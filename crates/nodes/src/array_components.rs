@@ -3,11 +3,12 @@
 use std::sync::Arc;
 
 use tessgraph_geometry::subdivide::Parents;
-use tessgraph_geometry::{Amount, Directions, GeometryError, Mesh, PatchGrids};
+use tessgraph_geometry::{Amount, Directions, Fit, GeometryError, Mesh, PatchGrids};
 use tessgraph_geometry::{
-    ArrayDomain, ArrayOptions, Arrayed, Height, Interpolation, Join, PerVertexOptions,
-    PerVertexReport, array_compensated, array_components,
+    ArrayDomain, ArrayOptions, ArrayParts, Arrayed, Height, Interpolation, Join, PerVertexOptions,
+    PerVertexReport, array_compensated, array_components, array_parts,
 };
+use tessgraph_graph::node::{Inputs as _, Preview};
 use tessgraph_graph::{EvalCx, Node, NodeError};
 use tessgraph_macros::{Choice, Inputs};
 
@@ -209,35 +210,25 @@ pub(crate) enum JoinChoice {
 impl Node for ArrayComponents {
     type Output = ArrayedComponents;
     const VERSION: u32 = 2;
+    const PREVIEW: Preview = Preview {
+        heights: &["scale"],
+        slight: &[],
+        components: &[
+            "component",
+            "components",
+            "border_component",
+            "border_components",
+        ],
+        parts: Some(|mut args, cx| Self::bind(&mut args)?.parts(cx)),
+    };
 
     fn eval(self, cx: &EvalCx<'_>) -> Result<Self::Output, NodeError> {
-        let fit = self.fit.with_cell(self.cell.clone())?;
-        let components = self.all_components()?;
-        for component in &components {
-            warn_of_shape(component, &fit, cx)?;
-            warn_of_outside(component, &fit, cx)?;
+        let setting = self.setting()?;
+        for component in &setting.components {
+            warn_of_shape(component, &setting.fit, cx)?;
+            warn_of_outside(component, &setting.fit, cx)?;
         }
-        let parents = match self.domain {
-            DomainChoice::Face => None,
-            DomainChoice::Parent => Some(Parents::of_mesh(&self.base).map_err(at("base"))?),
-        };
-        let grids = parents.as_ref().map(PatchGrids::of_parents).transpose()?;
-        let (choice, turns) = self.placements(parents.as_ref(), components.len())?;
-        let options = ArrayOptions {
-            fit: Some(&fit),
-            height: self.height.into(),
-            scale: Some(&self.scale),
-            interpolation: self.interpolation.into(),
-            domain: grids
-                .as_ref()
-                .map_or(ArrayDomain::Face, ArrayDomain::Parent),
-            choose: Some(&choice),
-            turns: turns.as_deref(),
-            carry: self.carry.as_deref().unwrap_or_default(),
-            join: self.join.into(),
-            ..ArrayOptions::default()
-        };
-        let (array, report) = self.array(&components, &options, cx)?;
+        let (array, report) = self.array(&setting.components, &self.options(&setting), cx)?;
         if array.placed == 0 {
             cx.warn("no component was placed: no face of the base was chosen to take one");
         }
@@ -254,7 +245,62 @@ impl Node for ArrayComponents {
     }
 }
 
+/// What an array is made with besides the inputs as they are.
+struct Setting<'a> {
+    fit: Fit,
+    components: Vec<&'a Mesh>,
+    grids: Option<PatchGrids>,
+    choice: Vec<u32>,
+    turns: Option<Vec<u8>>,
+}
+
 impl ArrayComponents {
+    fn setting(&self) -> Result<Setting<'_>, NodeError> {
+        let fit = self.fit.with_cell(self.cell.clone())?;
+        let components = self.all_components()?;
+        let parents = match self.domain {
+            DomainChoice::Face => None,
+            DomainChoice::Parent => Some(Parents::of_mesh(&self.base).map_err(at("base"))?),
+        };
+        let grids = parents.as_ref().map(PatchGrids::of_parents).transpose()?;
+        let (choice, turns) = self.placements(parents.as_ref(), components.len())?;
+        Ok(Setting {
+            fit,
+            components,
+            grids,
+            choice,
+            turns,
+        })
+    }
+
+    fn options<'a>(&'a self, setting: &'a Setting<'_>) -> ArrayOptions<'a> {
+        let grids = setting.grids.as_ref();
+        ArrayOptions {
+            fit: Some(&setting.fit),
+            height: self.height.into(),
+            scale: Some(&self.scale),
+            interpolation: self.interpolation.into(),
+            domain: grids.map_or(ArrayDomain::Face, ArrayDomain::Parent),
+            choose: Some(&setting.choice),
+            turns: setting.turns.as_deref(),
+            carry: self.carry.as_deref().unwrap_or_default(),
+            join: self.join.into(),
+            ..ArrayOptions::default()
+        }
+    }
+
+    /// The parts of the array; none where every vertex is compensated by itself.
+    fn parts(&self, cx: &EvalCx<'_>) -> Result<Option<ArrayParts>, NodeError> {
+        if self.compensate != CompensateChoice::None {
+            return Ok(None);
+        }
+        let setting = self.setting()?;
+        let (base, components) = (&self.base, &setting.components);
+        let options = self.options(&setting);
+        let parts = array_parts(base, components, &self.directions, &options, cx.monitor())?;
+        Ok(Some(parts))
+    }
+
     /// The components in the order of their numbers, then those of the border.
     fn all_components(&self) -> Result<Vec<&Mesh>, NodeError> {
         let several = self.components.as_deref().unwrap_or_default();

@@ -6,6 +6,7 @@ use tessgraph_geometry::compensate::{self, Compensate, CompensateOptions, SideRe
 use tessgraph_geometry::diffuse;
 use tessgraph_geometry::surface::Border;
 use tessgraph_geometry::{Amount, Directions, Field, Mesh, list_ids};
+use tessgraph_graph::node::Preview;
 use tessgraph_graph::{EvalCx, Node, NodeError};
 use tessgraph_macros::{Choice, Inputs, Outputs};
 
@@ -131,6 +132,11 @@ pub(crate) struct Compensated {
 impl Node for CompensateThickness {
     type Output = Compensated;
     const VERSION: u32 = 3;
+    // Lengths are per unit of height: a greater thickness finds much the same ones.
+    const PREVIEW: Preview = Preview {
+        slight: &["thickness"],
+        ..Preview::NONE
+    };
 
     fn eval(self, cx: &EvalCx<'_>) -> Result<Self::Output, NodeError> {
         let options = CompensateOptions {

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use tessgraph_geometry::{Anchor, Beyond, Fit, FitOptions, box_outliers, component_frame};
 use tessgraph_geometry::{Mesh, list_ids};
+use tessgraph_graph::node::Preview;
 use tessgraph_graph::{EvalCx, Node, NodeError};
 use tessgraph_macros::{Choice, Inputs};
 
@@ -102,6 +103,10 @@ pub(crate) enum BeyondChoice {
 impl Node for FitComponent {
     type Output = Arc<Mesh>;
     const VERSION: u32 = 2;
+    const PREVIEW: Preview = Preview {
+        heights: &["height"],
+        ..Preview::NONE
+    };
 
     fn eval(self, cx: &EvalCx<'_>) -> Result<Self::Output, NodeError> {
         let at =

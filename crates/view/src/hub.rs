@@ -54,6 +54,7 @@ fn slot(message: &ToPage) -> Option<usize> {
         | ToPage::Sectioned(_)
         | ToPage::Rendered { .. }
         | ToPage::Described(_)
+        | ToPage::Previewed(_)
         | ToPage::Notice(_)
         | ToPage::Access { .. }
         | ToPage::Shares(_) => return None,

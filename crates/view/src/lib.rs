@@ -12,6 +12,7 @@ pub mod document;
 mod hub;
 pub mod outcomes;
 pub mod pick;
+pub mod preview;
 pub mod protocol;
 pub mod section;
 mod server;

@@ -75,6 +75,8 @@ pub enum ToPage {
     },
     /// The answer to [`FromPage::Describe`].
     Described(Described),
+    /// The answer to [`FromPage::Preview`].
+    Previewed(Box<Previewed>),
     /// Something people should know.
     Notice(Notice),
     /// The table of a study of the graph.
@@ -578,6 +580,57 @@ pub struct Described {
     pub warnings: Vec<String>,
 }
 
+/// How the picture follows a parameter before the graph is evaluated.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+pub struct Previewed {
+    /// The number of the request.
+    pub request: u64,
+    /// Why it cannot; then there is nothing else.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reason: Option<String>,
+    /// The [`Shown::version`] whose vertices the instances have.
+    pub version: u64,
+    /// What the vertices are made of.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub instances: Option<Instances>,
+    /// Values of the parameter, ascending, and what all heights of the array are
+    /// then multiplied by.
+    pub factors: Vec<[f64; 2]>,
+    /// Whether what will be evaluated is exactly that, between the values too.
+    pub is_exact: bool,
+}
+
+/// The parts of an array: each of its vertices is a point of a component over a grid
+/// of base vertices, at X = P(u, v) + h D(u', v').
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Instances {
+    /// Two `u32` per vertex of the array: its placement, its point.
+    pub vertices: BufferName,
+    /// Eight `f32` per point: the first of the four grid vertices about (u, v), how
+    /// far it is to the next along u and v, its height; the same of (u', v'), and
+    /// the vertices in a row of the grid.
+    pub points: BufferName,
+    /// A `u32` each: the base's vertices under the placements, row by row.
+    pub grids: BufferName,
+    /// A `u32` per placement: where its grid begins.
+    pub grid_starts: BufferName,
+    /// Three `f32` per base vertex, about the origin of the shown mesh.
+    pub positions: BufferName,
+    /// Four `f32` per base vertex: the direction for heights from 0 on, its length.
+    pub outward: BufferName,
+    /// The same for heights below 0, where it is another.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub inward: Option<BufferName>,
+    /// Whether directions are units, and lengths interpolated apart.
+    pub is_unit: bool,
+    /// An `f32` per base vertex each: what heights are multiplied by there.
+    pub factors: Vec<BufferName>,
+    /// How far from the base the heights reach at most, in metres.
+    pub reach: f64,
+    /// Bytes of each of them.
+    pub buffers: BTreeMap<BufferName, usize>,
+}
+
 /// A result in a few lines.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ResultSummary {
@@ -693,6 +746,17 @@ pub enum FromPage {
         size: [u32; 2],
         /// From the model towards the eye; not zero.
         towards: [f64; 3],
+    },
+    /// Tell how the picture follows a parameter before the graph is evaluated.
+    Preview {
+        /// A number for the answer.
+        request: u64,
+        /// The parameter.
+        name: String,
+        /// The smallest value that it may be given next, in the file's units.
+        from: f64,
+        /// The largest one.
+        to: f64,
     },
     /// Tell what is known of a node.
     Describe {

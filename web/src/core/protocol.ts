@@ -219,6 +219,37 @@ export type Access = { type: "access"; may_edit: boolean };
 export type Pairing = { id: number; url: string; connected: number };
 /** With whom the page is shared; told to pages of this machine that ask. */
 export type Shares = { type: "shares"; lan: { address: string; edit: boolean } | null; pairings: Pairing[] };
+/** The parts of an array: each vertex is a point of a component over a grid of base vertices. */
+export type Instances = {
+  /** Two u32 per vertex: placement, point. */
+  vertices: Digest;
+  /** Eight f32 per point: grid place and fractions of (u, v), height; the same of (u', v'), row. */
+  points: Digest;
+  grids: Digest;
+  grid_starts: Digest;
+  /** Three f32 per base vertex, about the origin of the shown mesh. */
+  positions: Digest;
+  /** Four f32 per base vertex: direction, length. */
+  outward: Digest;
+  inward?: Digest;
+  is_unit: boolean;
+  factors: Digest[];
+  /** How far from the base the heights reach, in metres. */
+  reach: number;
+  buffers: Record<Digest, number>;
+};
+export type Previewed = {
+  type: "previewed";
+  request: number;
+  /** Why there is no preview. */
+  reason?: string;
+  /** Of the result that the instances belong to. */
+  version: number;
+  instances?: Instances;
+  /** Values of the parameter, and what all heights are then multiplied by. */
+  factors: [number, number][];
+  is_exact: boolean;
+};
 export type Notice = { type: "notice"; level: "info" | "warning" | "error"; text: string };
 /** `pictures` holds the number of each row's picture; missing where no row has one. */
 export type Study = { type: "study"; path: string; columns: string[]; rows: (number | string | null)[][]; pictures?: (number | null)[] };
@@ -236,6 +267,7 @@ export type FromServer =
   | Sectioned
   | Rendered
   | Described
+  | Previewed
   | Notice
   | Study
   | Access
@@ -260,4 +292,5 @@ export type ToServer =
   | { type: "section"; request: number; plane: Plane }
   | { type: "render"; request: number; size: [number, number]; towards: Vec3 }
   | { type: "measure"; request: number; from: Place; to: Place }
-  | { type: "describe"; node: string };
+  | { type: "describe"; node: string }
+  | { type: "preview"; request: number; name: string; from: number; to: number };

@@ -11,6 +11,9 @@ export type Chip = {
   act?: "cancel" | "messages" | "run" | undefined;
 };
 
+/** Whether the picture is drawn from parts before it is evaluated: exactly, or nearly. */
+export type Preview = undefined | "exact" | "approximate";
+
 /** How long a run takes by now, and how long the last one took, in milliseconds. */
 export type Clocked = { elapsed: number; last?: number | undefined };
 
@@ -18,13 +21,14 @@ export type Clocked = { elapsed: number; last?: number | undefined };
 const SHORT_MS = 500;
 
 /** The chip for what is known; the connection says more than the last run. */
-export function chipOf(link: Link, readOnly: boolean, status: Status | undefined, diagnostics: Diagnostics | undefined, clocked?: Clocked): Chip {
+export function chipOf(link: Link, readOnly: boolean, status: Status | undefined, diagnostics: Diagnostics | undefined, clocked?: Clocked, preview?: Preview): Chip {
   if (link === "refused") {
     return { sign: "⊘", text: "Server restarted with a new address: open the one it printed", kind: "bad" };
   }
   if (link === "retrying") return { sign: "⊘", text: "Disconnected: retrying", kind: "bad" };
   if (link === "offline") return { sign: "⎙", text: "Offline page: as it was when it was saved", kind: "idle" };
   if (link === "connecting" || !status) return { sign: "◌", text: "Connecting", kind: "idle" };
+  if (preview) return { sign: "◐", text: preview === "exact" ? "Preview (instanced)" : "Preview (instanced, approximate)", kind: "busy" };
   const chip = chipOfStatus(status, diagnostics, clocked);
   return readOnly ? { ...chip, text: `${chip.text} · Read only (shared)`, act: chip.act === "messages" ? chip.act : undefined } : chip;
 }

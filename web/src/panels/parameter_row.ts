@@ -170,9 +170,12 @@ class NumberEditor implements Editor {
       if (this.value !== Number(this.parameter.in_file)) this.changes.commit(this.value);
       else this.changes.live(this.value);
     });
-    slider.addEventListener("pointercancel", () => {
-      this.dragging = false;
-    });
+    // A slider that has come back to its value tells of no change.
+    for (const type of ["pointerup", "pointercancel"]) {
+      slider.addEventListener(type, () => {
+        this.dragging = false;
+      });
+    }
     slider.addEventListener("keydown", (event) => this.step(event));
     slider.addEventListener("blur", () => this.flush());
   }

@@ -4,7 +4,12 @@ import { type Action, tooltip } from "../core/keys.ts";
 import type { Document, Shown, Status } from "../core/protocol.ts";
 import { isReadOnly, type Store } from "../core/store.ts";
 import { formatCount } from "../core/units.ts";
-import { chipOf } from "./chip.ts";
+import { chipOf, type Preview } from "./chip.ts";
+
+const PREVIEW_TITLES = {
+  exact: "Drawn from the component and the cells it stands in; the evaluated result takes its place when it is there",
+  approximate: "Heights follow at once; what else depends on the parameter, as compensated directions, follows when it has been evaluated",
+};
 
 export type TopbarEvents = {
   act(action: Action): void;
@@ -26,6 +31,7 @@ export class Topbar {
   private readonly counts = element("span", { class: "counts" });
   private readonly colours = element("select", { "aria-label": "Colour by", title: tooltip("colour") });
   private chipAct: (() => void) | undefined;
+  private preview: Preview;
   private started: number | undefined;
   private lastMs: number | undefined;
   private timer: ReturnType<typeof setInterval> | undefined;
@@ -86,10 +92,17 @@ export class Topbar {
     this.started = undefined;
   }
 
+  /** Whether the picture runs ahead of its evaluation. */
+  setPreview(preview: Preview): void {
+    if (preview === this.preview) return;
+    this.preview = preview;
+    this.updateChip();
+  }
+
   private updateChip(): void {
     const { store } = this;
     const clocked = this.started === undefined ? undefined : { elapsed: performance.now() - this.started, last: this.lastMs };
-    const chip = chipOf(store.link, isReadOnly(store), store.get("status"), store.get("diagnostics"), clocked);
+    const chip = chipOf(store.link, isReadOnly(store), store.get("status"), store.get("diagnostics"), clocked, this.preview);
     this.chip.className = `chip ${chip.kind}`;
     setText(this.chipSign, chip.sign);
     setText(this.chipText, chip.text);
@@ -97,6 +110,7 @@ export class Topbar {
     setText(this.spoken, state);
     const cause = store.get("status")?.cause;
     this.chip.title = cause ? `${chip.text} · ${cause}` : chip.text;
+    if (this.preview) this.chip.title = PREVIEW_TITLES[this.preview];
     const hints = { cancel: "Esc stops", messages: "see messages", run: "run again" };
     setText(this.chipHint, chip.act ? hints[chip.act] : "");
     this.chipAct = {

@@ -6,7 +6,7 @@ import type { Digest } from "../core/protocol.ts";
 /** Texels of a row; shaders take it apart as `index & 4095, index >> 12`. */
 export const ROW = 4096;
 
-export type Format = "vec3" | "uvec3" | "uint" | "byte" | "float";
+export type Format = "vec3" | "vec4" | "uvec3" | "uint" | "byte" | "float";
 
 type Layout = { internal: number; format: number; type: number; bytes: number; view: "f32" | "u32" | "u8" };
 
@@ -132,6 +132,8 @@ export class Buffers {
     switch (format) {
       case "vec3":
         return { internal: gl.RGB32F, format: gl.RGB, type: gl.FLOAT, bytes: 12, view: "f32" };
+      case "vec4":
+        return { internal: gl.RGBA32F, format: gl.RGBA, type: gl.FLOAT, bytes: 16, view: "f32" };
       case "uvec3":
         return { internal: gl.RGB32UI, format: gl.RGB_INTEGER, type: gl.UNSIGNED_INT, bytes: 12, view: "u32" };
       case "uint":

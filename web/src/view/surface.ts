@@ -110,6 +110,11 @@ export class Surface {
     this.showDirections(this.wantsArrows);
   }
 
+  /** Other positions of the same vertices, for a while: until the next result is shown. */
+  usePositions(positions: Texture): void {
+    this.set("positions", positions);
+  }
+
   private showArrows(vertices: number, outward: Texture): void {
     const every = Math.max(1, Math.ceil(vertices / MOST_ARROWS));
     this.set("outward", outward);

@@ -20,13 +20,14 @@ import {
 } from "three";
 import type { MapName } from "../core/colour.ts";
 import type { ColourRange } from "../core/legend.ts";
-import type { Shown, ShownField, Vec3 } from "../core/protocol.ts";
+import type { Instances, Shown, ShownField, Vec3 } from "../core/protocol.ts";
 import { dot, type Section } from "../core/section.ts";
-import { Buffers, type BufferSource, type LoadTimes } from "./buffers.ts";
+import { Buffers, type BufferSource, type Format, type LoadTimes } from "./buffers.ts";
 import { type CameraState, ViewCamera } from "./camera.ts";
 import { boxCorners, samplePoints } from "./fit.ts";
 import { Cap } from "./cap.ts";
 import { Ground } from "./ground.ts";
+import { InstancedPositions, instanceBuffers } from "./instances.ts";
 import { Marks } from "./marks.ts";
 import { type EdgeMode, Surface, neededBuffers } from "./surface.ts";
 import { type ThemeName, VIEW_THEMES } from "./theme.ts";
@@ -72,6 +73,12 @@ export class Viewer {
   private edgeMode: EdgeMode = "polygons";
   private section: Section | undefined;
   private fitted = false;
+  /** Buffers of the parts that a preview is drawn from; kept, for much of them stays. */
+  private parts: { digest: string; format: Format }[] = [];
+  private instanced: InstancedPositions | undefined;
+  /** The factor on heights that is wanted, and the one that positions were computed with. */
+  private previewed: number | undefined;
+  private computed: number | undefined;
   private samples: { digest: string; points: Vec3[] } | undefined;
 
   /** Throws where the browser gives no WebGL2. */
@@ -124,10 +131,10 @@ export class Viewer {
 
   /**
    * Shows a result, coloured by one of its fields. The old picture stays until all
-   * buffers are here; a newer call overtakes an older one. The camera stays, but
-   * for the very first picture.
+   * buffers are here; a newer call overtakes an older one, and then `false` comes
+   * back. The camera stays, but for the very first picture.
    */
-  async show(shown: Shown, field: ShownField | undefined): Promise<void> {
+  async show(shown: Shown, field: ShownField | undefined): Promise<boolean> {
     this.sequence += 1;
     const { sequence } = this;
     const needed = neededBuffers(shown, field);
@@ -135,8 +142,10 @@ export class Viewer {
       if (digest === shown.mesh?.positions) this.samples = { digest, points: samplePoints(new Float32Array(bytes)) };
       this.onBuffer(digest, bytes);
     });
-    if (sequence !== this.sequence) return;
-    this.buffers.keep(needed);
+    if (sequence !== this.sequence) return false;
+    this.endPreview();
+    if (this.shown?.node !== shown.node) this.parts = [];
+    this.buffers.keep([...needed, ...this.parts]);
     this.shown = shown;
     this.field = field;
     this.surface.show(shown, field, this.buffers);
@@ -144,6 +153,60 @@ export class Viewer {
     this.updateCut();
     this.invalidate();
     this.onPicture(times);
+    return true;
+  }
+
+  /**
+   * Makes the parts of what is shown ready to be drawn in its place. Throws where the
+   * graphics card cannot. A newer call, or a newer result, overtakes it.
+   */
+  async prepareInstances(instances: Instances): Promise<boolean> {
+    const { shown } = this;
+    this.dropInstances();
+    // Older parts go when the next result is shown: until then it may need some of them.
+    this.parts = instanceBuffers(instances);
+    const { parts } = this;
+    await this.buffers.load(parts, () => {});
+    if (parts !== this.parts || shown !== this.shown || !shown?.mesh) return false;
+    this.instanced = new InstancedPositions(this.renderer, instances, this.buffers, shown.mesh.vertices);
+    return true;
+  }
+
+  /**
+   * Draws the parts with all heights multiplied by `factor`, until a result is shown;
+   * says whether there are parts.
+   */
+  previewHeights(factor: number): boolean {
+    if (!this.instanced) return false;
+    this.previewed = factor;
+    this.invalidate();
+    return true;
+  }
+
+  /** Computes the positions of a preview, once for each frame that needs others. */
+  private computeHeights(): void {
+    const { instanced, previewed } = this;
+    if (!instanced || previewed === undefined || previewed === this.computed) return;
+    this.computed = previewed;
+    this.surface.usePositions(instanced.at(previewed));
+  }
+
+  /** Whether what is drawn is made of parts. */
+  get isPreview(): boolean {
+    return this.previewed !== undefined;
+  }
+
+  /** Lets the parts go. */
+  private dropInstances(): void {
+    this.endPreview();
+    this.parts = [];
+  }
+
+  private endPreview(): void {
+    this.previewed = undefined;
+    this.computed = undefined;
+    this.instanced?.dispose();
+    this.instanced = undefined;
   }
 
   private place(mesh: NonNullable<Shown["mesh"]>): void {
@@ -161,6 +224,7 @@ export class Viewer {
   /** After the graphics card forgot everything: fetched again, by the same names. */
   private rebuild(): void {
     this.buffers.forget();
+    this.dropInstances();
     if (this.shown) void this.show(this.shown, this.field);
   }
 
@@ -392,10 +456,13 @@ export class Viewer {
     if (box.isEmpty()) return new Sphere(new Vector3(), 1);
     const sphere = box.getBoundingSphere(new Sphere());
     sphere.radius = Math.max(sphere.radius, 1e-3);
+    // A preview reaches beyond the box of what was evaluated.
+    if (this.previewed !== undefined) sphere.radius += Math.abs(this.previewed) * (this.instanced?.reach ?? 0);
     return sphere;
   }
 
   private draw(): void {
+    this.computeHeights();
     this.camera.clip(this.sphere());
     this.renderer.render(this.scene, this.camera.camera);
   }

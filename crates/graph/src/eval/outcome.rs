@@ -8,9 +8,10 @@ use tessgraph_geometry::digest::Digest;
 
 use super::cache::Cache;
 use super::explain::KeyPart;
-use super::inputs::value_of;
+use super::inputs::{fitted, value_of};
 use crate::diagnostic::{Diagnostic, Severity};
-use crate::plan::{PlanMeasure, ResultRef};
+use crate::node::Args;
+use crate::plan::{Plan, PlanMeasure, ResultRef};
 use crate::value::Value;
 
 /// What the evaluator did about a node.
@@ -152,6 +153,32 @@ impl Evaluation {
         self.wanted.get(&result).map(|wanted| wanted.provenance)
     }
 
+    /// What the node was given; `None` unless all results that it takes were asked
+    /// for and are there.
+    pub fn arguments(&self, plan: &Plan, node: usize) -> Option<Args> {
+        let planned = plan.nodes.get(node)?;
+        let mut results = planned
+            .inputs
+            .iter()
+            .flat_map(|input| input.origin.results());
+        if results.any(|result| self.value(result).is_none()) {
+            return None;
+        }
+        let inputs = planned.spec.inputs.iter().zip(&planned.inputs);
+        let values = inputs.map(|(spec, input)| {
+            let value = value_of(&input.origin, &|result| self.present(result)).ok()?;
+            let fitted = value.map(|value| fitted(spec, &input.origin, value, planned.units));
+            fitted.transpose().ok()
+        });
+        values.collect::<Option<Vec<_>>>().map(Args::new)
+    }
+
+    /// A result that is known to be there.
+    fn present(&self, result: ResultRef) -> Value {
+        let value = self.value(result).cloned();
+        value.unwrap_or(Value::Bool(false))
+    }
+
     /// Whether no node failed and the run was not cancelled.
     pub fn is_ok(&self) -> bool {
         !self.cancelled
@@ -177,13 +204,7 @@ impl PlanMeasure {
         {
             return Err("what it needs could not be computed".to_owned());
         }
-        // All of them are there, as was just seen.
-        let get = |result| {
-            evaluation
-                .value(result)
-                .cloned()
-                .unwrap_or(Value::Bool(false))
-        };
+        let get = |result| evaluation.present(result);
         value_of(&self.origin, &get)?.ok_or_else(|| "it has none".to_owned())
     }
 }

@@ -2,9 +2,11 @@
 
 mod context;
 mod error;
+mod preview;
 
 pub use context::{EvalCx, FileUse};
 pub use error::NodeError;
+pub use preview::{Preview, TakeApart};
 
 use tessgraph_geometry::Quantity;
 
@@ -100,6 +102,8 @@ pub trait Node: Inputs {
     type Output: Outputs;
     /// Raised whenever results change: entries in caches then no longer match.
     const VERSION: u32 = 1;
+    /// What a picture may show of it before it is evaluated anew.
+    const PREVIEW: Preview = Preview::NONE;
 
     /// Computes the results. Pure: equal inputs give equal bytes.
     ///
@@ -121,6 +125,8 @@ pub struct NodeSpec {
     pub inputs: &'static [InputSpec],
     /// Its results in order; the first is the main one.
     pub outputs: &'static [OutputSpec],
+    /// What a picture may show of it before it is evaluated anew.
+    pub preview: Preview,
     /// Computes the results from one value per input (`None` where left out).
     pub eval: fn(Args, &EvalCx<'_>) -> Result<Vec<Value>, NodeError>,
 }
@@ -134,6 +140,7 @@ impl NodeSpec {
             version: N::VERSION,
             inputs: N::INPUTS,
             outputs: <N::Output as Outputs>::OUTPUTS,
+            preview: N::PREVIEW,
             eval: |mut args, cx| Ok(N::bind(&mut args)?.eval(cx)?.into_values()),
         }
     }

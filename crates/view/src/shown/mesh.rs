@@ -62,6 +62,12 @@ pub(super) fn directions(buffers: &Buffers, directions: &Arc<Directions>) -> Sho
     }
 }
 
+/// What the positions of a mesh are told relative to.
+pub(crate) fn origin_of(mesh: &Mesh) -> DVec3 {
+    let (low, high) = bounds(mesh.positions());
+    origin(low, high)
+}
+
 /// Smallest and largest coordinates; zeros without any.
 fn bounds(positions: &[DVec3]) -> (DVec3, DVec3) {
     let Some(&first) = positions.first() else {
@@ -104,7 +110,7 @@ fn positions(buffers: &Buffers, mesh: &Arc<Mesh>, origin: DVec3) -> (BufferName,
 }
 
 /// Vectors less `origin`, as `f32`.
-fn triples(vectors: &[DVec3], origin: DVec3) -> Bytes {
+pub(crate) fn triples(vectors: &[DVec3], origin: DVec3) -> Bytes {
     let numbers = |index: usize| {
         let vector = (vectors[index] - origin).as_vec3();
         vector.to_array().map(|number| number.to_bits().to_le())

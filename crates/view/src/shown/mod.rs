@@ -21,6 +21,7 @@ use crate::protocol::{BufferName, Shown, ShownField};
 use crate::values::entries;
 use fields::{Hanger, Ranges};
 use memo::Memo;
+pub(crate) use mesh::{all, origin_of, triples};
 
 /// Makes pictures of results.
 pub struct Gallery {
@@ -91,6 +92,7 @@ pub fn wanted(plan: &Plan, shown: Option<ResultRef>) -> Vec<ResultRef> {
     }
     if let Some(shown) = shown {
         wanted.extend(mesh_inputs(plan, shown.node));
+        wanted.extend(crate::preview::wanted(plan, shown));
     }
     let mut seen = BTreeSet::new();
     wanted.retain(|result| seen.insert(*result));

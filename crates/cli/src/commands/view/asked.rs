@@ -88,6 +88,12 @@ impl Viewer<'_> {
                 towards,
             } => self.render(request, size, towards, reply),
             FromPage::Describe { node } => self.describe(node, reply),
+            FromPage::Preview {
+                request,
+                name,
+                from,
+                to,
+            } => self.preview(request, &name, [from, to], reply),
         }
     }
 

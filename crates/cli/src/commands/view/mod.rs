@@ -7,6 +7,7 @@ mod args;
 mod asked;
 mod edits;
 mod network;
+mod preview;
 mod problems;
 mod requests;
 mod secret;

@@ -27,7 +27,7 @@ const TICK: Duration = Duration::from_millis(100);
 /// What lives as long as the command.
 pub(super) struct Studio<'a> {
     args: &'a ViewArgs,
-    registry: &'static [NodeSpec],
+    pub(super) registry: &'static [NodeSpec],
     engine: Engine,
     pool: rayon::ThreadPool,
     /// Bytes that kept results may take.

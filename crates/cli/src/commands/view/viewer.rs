@@ -39,7 +39,7 @@ pub(super) struct Viewer<'a> {
     pictures: Pictures,
     pub(super) hub: Arc<Hub>,
     pub(super) buffers: Arc<Buffers>,
-    gallery: Arc<Gallery>,
+    pub(super) gallery: Arc<Gallery>,
     /// The digest of the graph file when it was read last.
     pub(super) content: Option<Digest>,
     pub(super) declared: Option<Declarations>,
@@ -190,7 +190,7 @@ impl<'a> Viewer<'a> {
     }
 
     /// Values that the graph runs with.
-    fn settings(&self) -> Vec<(String, String)> {
+    pub(super) fn settings(&self) -> Vec<(String, String)> {
         let live = self.live.iter();
         let live = live.map(|(name, value)| (name.clone(), value.clone()));
         // Of several for one parameter the last counts: that of the command line.

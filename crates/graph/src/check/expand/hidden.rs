@@ -8,7 +8,7 @@ use std::sync::Arc;
 use tessgraph_geometry::{Mesh, Quantity, join};
 
 use crate::NodeError;
-use crate::node::{Args, EvalCx, InputSpec, NodeSpec, OutputSpec};
+use crate::node::{Args, EvalCx, InputSpec, NodeSpec, OutputSpec, Preview};
 use crate::value::{Kind, Value};
 
 const INPUT: InputSpec = InputSpec {
@@ -51,6 +51,7 @@ macro_rules! inputs {
                 version: 1,
                 inputs: INPUTS,
                 outputs: OUTPUTS,
+                preview: Preview::NONE,
                 eval: unchanged,
             }
         }),*]
@@ -107,6 +108,7 @@ pub(super) static JOIN: NodeSpec = NodeSpec {
         quantity: Quantity::Number,
         faults: None,
     }],
+    preview: Preview::NONE,
     eval: join_meshes,
 };
 
@@ -146,6 +148,7 @@ macro_rules! lists {
                 version: 1,
                 inputs: INPUTS,
                 outputs: OUTPUTS,
+                preview: Preview::NONE,
                 eval: unchanged,
             }
         }),*]

@@ -51,6 +51,7 @@ const fn node(
         version: 1,
         inputs,
         outputs,
+        preview: crate::node::Preview::NONE,
         eval: |_, _| Ok(Vec::new()),
     }
 }
