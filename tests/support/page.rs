@@ -142,9 +142,16 @@ impl Server {
 
     /// Opens the page's socket.
     pub(crate) fn open(&self) -> Page {
+        self.try_open().expect("a socket")
+    }
+
+    /// Opens the page's socket, if there is a server.
+    pub(crate) fn try_open(&self) -> Option<Page> {
+        let stream = TcpStream::connect(("127.0.0.1", self.address.port())).ok()?;
+        stream.set_read_timeout(Some(PATIENCE)).expect("a socket");
         let url = format!("ws://{}/{}/socket", self.host(), self.token);
-        let (socket, _) = tungstenite::client(url, self.connect()).expect("a socket");
-        Page { socket }
+        let (socket, _) = tungstenite::client(url, stream).ok()?;
+        Some(Page { socket })
     }
 
     /// The content of a buffer that a message names.
@@ -203,8 +210,13 @@ impl Page {
     }
 
     /// The next message.
+    ///
+    /// # Panics
+    /// If none comes in time: signs of life of the server alone are none.
     pub(crate) fn next(&mut self) -> tungstenite::Result<Value> {
+        let deadline = Instant::now() + PATIENCE;
         loop {
+            assert!(Instant::now() < deadline, "no message within {PATIENCE:?}");
             match self.socket.read()? {
                 Message::Text(text) => return Ok(serde_json::from_str(&text).expect("JSON")),
                 Message::Close(_) => return Err(tungstenite::Error::ConnectionClosed),

@@ -153,6 +153,71 @@ fn a_server_that_is_killed_comes_back_at_the_same_address() {
     assert_eq!(page.any("shown")["mesh"]["faces"], 6);
 }
 
+/// Opens a page as soon as there is a server again. While a program begins anew its
+/// old socket may still take connections, and drop them.
+#[cfg(unix)]
+fn reopened(server: &Server) -> Page {
+    let deadline = std::time::Instant::now() + Duration::from_secs(60);
+    loop {
+        if let Some(page) = server.try_open() {
+            return page;
+        }
+        assert!(std::time::Instant::now() < deadline, "no server any more");
+        std::thread::sleep(Duration::from_millis(20));
+    }
+}
+
+#[test]
+#[cfg(unix)]
+fn too_large_a_result_ends_only_its_run() {
+    // Looking for crossings does not ask for memory before it takes it.
+    let text = r#"Graph(
+    version: 1,
+    params: {"n": Integer(default: 2, min: 1, max: 1000000)},
+    nodes: {
+        "grid": Grid(cells: ["n", 1]),
+        "crossings": CheckIntersections(mesh: "grid"),
+    },
+    outputs: {"grid.obj": "grid", "crossings.json": "crossings"},
+)
+"#;
+    let folder = folder_with(text);
+    let limit = ["--port", "0", "--max-memory", "80MB"];
+    let server = Server::start(folder.path(), "g.ron", &limit);
+    let mut page = server.open();
+    page.until_up_to_date();
+    let hang_up = |mut page: Page| while page.next().is_ok() {};
+    // A value that is tried out is forgotten, and what the file says shown again.
+    page.ask(&json!({"type": "set", "name": "n", "value": 450_000}));
+    hang_up(page);
+    let mut page = reopened(&server);
+    let notice = page.any("notice");
+    let told = notice["text"].as_str().expect("a text");
+    assert!(told.contains("memory"), "{told}");
+    let mut page = server.open();
+    page.until("shown", |shown| shown["mesh"]["faces"] == 2);
+    // What stands in the file is not tried again before it is another.
+    write(
+        &folder.path().join("g.ron"),
+        &text.replace("default: 2", "default: 450000"),
+    );
+    hang_up(page);
+    let mut page = reopened(&server);
+    let document = page.any("document");
+    assert_eq!(document["nodes"][0]["name"], "grid");
+    status(&mut page, "stale");
+    let told = page.any("diagnostics");
+    assert_eq!(told["items"][0]["code"], "out_of_memory");
+    let help = told["items"][0]["help"].as_str().expect("a way out");
+    assert!(help.contains("--max-memory"), "{help}");
+    write(
+        &folder.path().join("g.ron"),
+        &text.replace("default: 2", "default: 3"),
+    );
+    page.until_up_to_date();
+    assert_eq!(page.any("shown")["mesh"]["faces"], 3);
+}
+
 #[test]
 #[cfg(unix)]
 fn ctrl_c_ends_it_with_the_status_of_an_interruption() {

@@ -27,6 +27,8 @@ pub struct Hub {
 struct State {
     latest: [Option<Kept>; SLOTS],
     notices: VecDeque<Kept>,
+    /// What pages are told when they come.
+    greeting: Option<Utf8Bytes>,
     /// How many messages there were.
     count: u64,
 }
@@ -109,6 +111,12 @@ impl Hub {
         self.bell.send_replace(order);
     }
 
+    /// Tells this to every page that comes from now on; nothing any more with `None`.
+    pub fn greet(&self, notice: Option<Notice>) {
+        let greeting = notice.map(|notice| text(&ToPage::Notice(notice)));
+        self.state().greeting = greeting;
+    }
+
     /// Rings after [`Hub::publish`] and [`Hub::notice`].
     pub(crate) fn bell(&self) -> watch::Receiver<u64> {
         self.bell.subscribe()
@@ -117,8 +125,9 @@ impl Hub {
     /// Everything a new page has to be told, and how many messages there were.
     pub(crate) fn first(&self) -> (Vec<Utf8Bytes>, u64) {
         let state = self.state();
-        let latest = state.latest.iter().flatten();
-        (latest.map(|kept| kept.text.clone()).collect(), state.count)
+        let latest = state.latest.iter().flatten().map(|kept| &kept.text);
+        let texts = latest.chain(&state.greeting).cloned();
+        (texts.collect(), state.count)
     }
 
     /// What a page has to be told that was told the first `told` messages, in

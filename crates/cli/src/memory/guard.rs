@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use tessgraph_pages::LargePages;
 
-use super::meter;
+use super::{TOO_LARGE, meter};
 use crate::commands::FAILED;
 use crate::interrupt;
 use crate::watch::begin_anew;
@@ -148,10 +148,7 @@ fn refuse(more: usize, live: usize, limit: Option<usize>) -> ! {
         Some(limit) => writeln!(err, "the limit is {} MB", mega(limit)),
         None => writeln!(err, "the system has no more"),
     };
-    let _ = writeln!(
-        err,
-        " = help: make a smaller result, with fewer levels or cells, or raise `--max-memory`"
-    );
+    let _ = writeln!(err, " = help: {TOO_LARGE}");
     drop(err);
     interrupt::remove_temporaries();
     begin_anew();

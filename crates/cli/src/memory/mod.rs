@@ -7,6 +7,10 @@ pub use guard::MemoryGuard;
 pub(crate) use guard::{left, limit, set_limit};
 pub(crate) use meter::{Span, count_this_thread};
 
+/// The way out where memory is short.
+pub(crate) const TOO_LARGE: &str =
+    "make a smaller result, with fewer levels or cells, or raise `--max-memory`";
+
 /// What is assumed where the system does not tell.
 const FALLBACK: u64 = 8 << 30;
 

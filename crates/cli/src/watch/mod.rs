@@ -14,7 +14,7 @@ mod mailbox;
 mod notices;
 mod places;
 mod rerun;
-mod resume;
+pub(crate) mod resume;
 mod stamps;
 mod status;
 

@@ -23,7 +23,7 @@ pub(crate) fn watch<'a>(
         warned: false,
         cx,
     };
-    resume::arm();
+    resume::arm(Vec::new(), Vec::new());
     if args.resume.is_some() {
         rerun.tell("waiting for a change of the graph\n");
         if args.report == ReportFormat::Json {
@@ -37,7 +37,7 @@ pub(crate) fn watch<'a>(
         poll: args.poll,
     };
     // What was saved while the program began anew was told to nobody.
-    let waits = || { args.resume }.is_some_and(|began| !resume::is_newer(&args.graph, began));
+    let waits = || { args.resume }.is_some_and(|began| resume::waits(&args.graph, began));
     follow(&watched, waits, mailbox, rerun)
 }
 

@@ -164,6 +164,11 @@ impl Server {
         self.network
     }
 
+    /// The secret that pages must know.
+    pub fn token(&self) -> &str {
+        &self.token
+    }
+
     /// Where it listens.
     pub fn address(&self) -> SocketAddr {
         self.address

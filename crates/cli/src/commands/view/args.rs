@@ -44,6 +44,12 @@ pub(crate) struct ViewArgs {
     /// Looks for changes twice a second, where the system tells of none: on network drives
     #[arg(long)]
     pub(crate) poll: bool,
+    /// Goes on after a run that took too much memory; milliseconds of 1970 when it began
+    #[arg(long, value_name = "MS", hide = true)]
+    pub(crate) resume: Option<u64>,
+    /// The port it goes on at
+    #[arg(long, value_name = "N", requires = "resume", hide = true)]
+    pub(crate) resume_port: Option<u16>,
     /// Holds a parameter at another value
     #[arg(long, value_name = "NAME=VALUE", value_parser = setting)]
     pub(crate) set: Vec<Setting>,

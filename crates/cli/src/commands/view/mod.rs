@@ -26,7 +26,7 @@ use super::{Context, FAILED, USAGE, status};
 use crate::diagnostics::print;
 use crate::graph_file::GraphFile;
 use crate::interrupt;
-use crate::watch::{Mailbox, Message, Watched, follow};
+use crate::watch::{Mailbox, Message, Watched, follow, resume};
 use requests::Requests;
 use studio::Studio;
 use viewer::{Pictures, Viewer};
@@ -79,13 +79,21 @@ pub(crate) fn view(args: &ViewArgs, cx: &mut Context<'_, '_>) -> u8 {
         Ok(server) => server,
         Err(status) => return status,
     };
-    announce(args, &server, cx);
+    let port = format!("--resume-port={}", server.address().port());
+    resume::arm(vec![port.into()], vec![(secret::VARIABLE, server.token())]);
+    if args.resume.is_none() {
+        announce(args, &server, cx);
+    }
     let watched = Watched {
         graph: &args.graph,
         allowed: &args.engine.allow,
         poll: args.poll,
     };
-    let status = follow(&watched, || false, &mailbox, viewer);
+    let waits = || {
+        args.resume
+            .is_some_and(|began| resume::waits(&args.graph, began))
+    };
+    let status = follow(&watched, waits, &mailbox, viewer);
     drop(server);
     studio.close();
     status
@@ -116,7 +124,7 @@ fn serve(args: &ViewArgs, cx: &mut Context<'_, '_>, desk: Desk) -> Result<Server
         })?;
     let address = Address {
         host: args.host,
-        port: args.port,
+        port: args.resume_port.or(args.port),
         network,
     };
     let started = secret::chosen(&args.graph, cx.cache.as_deref())

@@ -11,7 +11,7 @@ use tessgraph_view::token;
 const FILE: &str = "view-secret";
 
 /// The variable that names the secret, for programs that start the server.
-const VARIABLE: &str = "TESSGRAPH_VIEW_TOKEN";
+pub(super) const VARIABLE: &str = "TESSGRAPH_VIEW_TOKEN";
 
 /// The secret that the environment names, or that of the graph.
 ///

@@ -23,9 +23,10 @@ use super::requests::Requests;
 use super::studio::{Done, Order, Studio, Viewed};
 use super::study::{self, Studies};
 use crate::commands::run::Control;
-use crate::diagnostics::error_count;
-use crate::graph_file::{LARGEST_GRAPH, folder_of};
-use crate::watch::{Cause, Job, Wish, Work};
+use crate::diagnostics::{error_count, without_place};
+use crate::graph_file::{GraphFile, LARGEST_GRAPH, folder_of};
+use crate::memory::TOO_LARGE;
+use crate::watch::{Cause, Job, Wish, Work, resume};
 
 /// Paths of pictures that pages may ask for by number.
 pub(super) type Pictures = Arc<Mutex<Vec<PathBuf>>>;
@@ -120,7 +121,40 @@ impl<'a> Viewer<'a> {
         }
         viewer.publish_document();
         viewer.publish_study();
+        if let Some(began) = args.resume {
+            viewer.resume(began);
+        }
         viewer
+    }
+
+    /// Tells pages why the program began anew.
+    fn resume(&mut self, began: u64) {
+        if !resume::waits(&self.args.graph, began) {
+            let text = "the run took more memory than it may; what the file says is shown";
+            self.hub.greet(Some(Notice {
+                level: Level::Warning,
+                text: text.to_owned(),
+            }));
+            return;
+        }
+        let (args, registry) = (self.args, self.studio.registry);
+        let opened = GraphFile::open(&args.graph, registry, &args.set, &args.engine.allow);
+        if let Ok(file) = opened {
+            self.document.nodes = nodes(&file.plan);
+            self.document.outputs = outputs(&file.plan);
+            self.publish_document();
+        }
+        let name = args.graph.to_string_lossy();
+        let message = "the run took more memory than it may".to_owned();
+        let mut diagnostic = without_place("out_of_memory", &name, message);
+        diagnostic.help = Some(TOO_LARGE.to_owned());
+        let items = problems(&[diagnostic]);
+        self.hub.publish(&ToPage::Status(Status {
+            state: State::Stale,
+            errors: Some(1),
+            ..Status::default()
+        }));
+        self.hub.publish(&ToPage::Diagnostics { items });
     }
 
     /// Tells pages of the table of a study, if there is a new one.
@@ -289,6 +323,13 @@ impl<'a> Work<'a> for Viewer<'a> {
 
     fn begin(&mut self, cause: &Cause) -> Job<'a, Viewed> {
         (self.outdated, self.cancelled) = (false, false);
+        if self.last.is_some() {
+            // Whoever comes from now on sees what came after it.
+            self.hub.greet(None);
+        }
+        if !self.live.is_empty() {
+            resume::begins_trial();
+        }
         let order = Order {
             set: self.settings(),
             shown: self.asked.clone(),
