@@ -1,6 +1,7 @@
 // Buffers of the server as textures that shaders read by index. A buffer is named
 // by its content, so that one already here is never fetched or uploaded again.
 import { ExternalTexture, type WebGLRenderer } from "three";
+import { bytesOf } from "../core/bytes.ts";
 import type { Digest } from "../core/protocol.ts";
 
 /** Texels of a row; shaders take it apart as `index & 4095, index >> 12`. */
@@ -25,7 +26,7 @@ export function fromServer(address: URL): BufferSource {
     // and from this machine a buffer comes as fast as from a disk.
     const response = await fetch(new URL(`buffer/${digest}`, address), { cache: "no-store" });
     if (!response.ok) throw new Error(`buffer ${digest} is not to be had: ${response.status} ${response.statusText}`);
-    return response.arrayBuffer();
+    return bytesOf(response);
   };
 }
 
