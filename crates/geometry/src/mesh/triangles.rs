@@ -138,6 +138,13 @@ fn normal_of(count: usize, place: impl Fn(usize) -> DVec3) -> DVec3 {
 
 /// Whether no triangle of the fan from corner 0 turns against the polygon's normal.
 fn is_simple_fan(count: usize, place: impl Fn(usize) -> DVec3) -> bool {
+    if count == 4 {
+        // Most polygons: what the normal is the sum of is what is compared with it.
+        let arm = |k: usize| place(k) - place(0);
+        let (first, second) = (arm(1).cross(arm(2)), arm(2).cross(arm(3)));
+        let normal = first + second;
+        return first.dot(normal) >= 0.0 && second.dot(normal) >= 0.0;
+    }
     let normal = normal_of(count, &place);
     (1..count - 1).all(|k| {
         let cross = (place(k) - place(0)).cross(place(k + 1) - place(0));

@@ -18,7 +18,7 @@ use crate::protocol::{BufferName, ShownDirections, ShownMesh};
 
 /// A mesh as buffers.
 pub(super) fn mesh(buffers: &Buffers, mesh: &Arc<Mesh>, units: Units) -> ShownMesh {
-    let (low, high) = bounds(mesh.positions());
+    let (low, high) = mesh.bounds().unwrap_or_default();
     let origin = origin(low, high);
     let mut named = BTreeMap::new();
     let mut name = |(name, bytes): (BufferName, usize)| {
@@ -64,20 +64,8 @@ pub(super) fn directions(buffers: &Buffers, directions: &Arc<Directions>) -> Sho
 
 /// What the positions of a mesh are told relative to.
 pub(crate) fn origin_of(mesh: &Mesh) -> DVec3 {
-    let (low, high) = bounds(mesh.positions());
+    let (low, high) = mesh.bounds().unwrap_or_default();
     origin(low, high)
-}
-
-/// Smallest and largest coordinates; zeros without any.
-fn bounds(positions: &[DVec3]) -> (DVec3, DVec3) {
-    let Some(&first) = positions.first() else {
-        return (DVec3::ZERO, DVec3::ZERO);
-    };
-    let wider = |(low, high): (DVec3, DVec3), (other, another): (DVec3, DVec3)| {
-        (low.min(other), high.max(another))
-    };
-    let one = |found, vertex: usize| wider(found, (positions[vertex], positions[vertex]));
-    parallel::reduce(positions.len(), || (first, first), one, wider)
 }
 
 /// A place near the middle of a box, so that numbers about it are no larger than

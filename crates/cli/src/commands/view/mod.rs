@@ -34,8 +34,9 @@ use viewer::{Pictures, Viewer};
 /// The share of the cache's memory that buffers nobody names any more may take.
 const BUFFER_SHARE: u64 = 4;
 
-/// And more than this is of no use: they are made again in milliseconds.
-const MOST_BUFFERS: u64 = 512 << 20;
+/// And more than this is of no use: they are made again in milliseconds, and in
+/// memory that was used before rather than in new pages.
+const MOST_BUFFERS: u64 = 64 << 20;
 
 /// Carries the command out.
 pub(crate) fn view(args: &ViewArgs, cx: &mut Context<'_, '_>) -> u8 {

@@ -184,16 +184,20 @@ impl<'a> Studio<'a> {
         };
         let evaluation = self.engine.evaluate(&plan, &wanted, &file.world, &observer);
         let is_stopped = evaluation.cancelled || interrupt::is_requested();
-        let changes = if is_stopped {
-            Vec::new()
-        } else {
+        let picture = || {
+            let shown = shown.filter(|_| !is_stopped)?;
+            order.gallery.picture(&plan, &evaluation, shown)
+        };
+        let changes = || {
+            if is_stopped {
+                return Vec::new();
+            }
             // Under a name of its own: `run` compares with what `run` did.
             let identity = format!("view {}", self.args.graph.display());
             self.engine.explain(&identity, &plan, &evaluation)
         };
-        let picture = shown
-            .filter(|_| !is_stopped)
-            .and_then(|shown| order.gallery.picture(&plan, &evaluation, shown));
+        // One has to wait for the disk.
+        let (picture, changes) = rayon::join(picture, changes);
         Done {
             outcomes: outcomes(&evaluation, &changes),
             checks: checks(&plan, &evaluation),
