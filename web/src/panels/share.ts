@@ -55,6 +55,9 @@ export class ShareDialog {
   private timer: ReturnType<typeof setInterval> | undefined;
   private drawn = "";
 
+  /** Devices whose codes are to be seen. */
+  private readonly unveiled = new Set<number>();
+
   constructor(
     private readonly store: Store,
     private readonly events: ShareEvents,
@@ -154,7 +157,20 @@ export class ShareDialog {
   private pairing({ id, url, connected }: Pairing): HTMLElement {
     const open = element("span", { class: "hint" }, connected === 0 ? "nobody there" : connected === 1 ? "1 page open" : `${connected} pages open`);
     const revoke = button("Take back", `Close the address of device ${id}`, () => this.store.send({ type: "unpair", id }));
-    const code = element("details", { class: "code", open: connected === 0 }, element("summary", {}, `Device ${id}`), qrPicture(url), element("input", { type: "text", readonly: true, value: url, "aria-label": `Address for device ${id}` }));
+    const code = element("details", { class: "code", open: connected === 0 }, element("summary", {}, `Device ${id}`), this.veiled(id, url), element("input", { type: "text", readonly: true, value: url, "aria-label": `Address for device ${id}` }));
     return element("li", {}, code, element("div", { class: "line" }, open, revoke));
+  }
+
+  /** The code of an address, blurred until somebody wants it: whoever sees it may look. */
+  private veiled(id: number, url: string): HTMLElement {
+    const veil = button("", `Code for device ${id}`, () => {
+      if (!this.unveiled.delete(id)) this.unveiled.add(id);
+      show();
+    });
+    veil.classList.add("veil");
+    veil.append(qrPicture(url));
+    const show = (): void => veil.setAttribute("aria-pressed", String(this.unveiled.has(id)));
+    show();
+    return veil;
   }
 }

@@ -78,6 +78,11 @@ test("a phone is paired by its code, looks on, and is sent away", async (t) => {
   await live.page.keyboard.press("Shift+S");
   await live.page.getByRole("button", { name: "Make an address at" }).click();
   await live.page.locator(".qr path").waitFor();
+  const code = live.page.getByRole("button", { name: "Code for device 1" });
+  const blur = (): Promise<string> => live.page.locator(".qr").evaluate((qr) => getComputedStyle(qr).filter);
+  assert.match(await blur(), /blur/, "nobody scans it over a shoulder");
+  await code.click();
+  assert.equal(await blur(), "none");
   const url = await live.page.locator('.pairings input[aria-label="Address for device 1"]').inputValue();
   assert.doesNotMatch(url, /127\.0\.0\.1|localhost/);
   const phone = await LivePage.open(bench.browser, url, { width: 390, height: 844 });
