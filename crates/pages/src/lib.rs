@@ -190,6 +190,7 @@ mod tests {
                 }
             });
         }
+        keep_at_most(0);
         keep_at_most(usize::MAX);
         let first = vec![1u8; 20 * PAGE];
         let place = first.as_ptr();
@@ -197,6 +198,13 @@ mod tests {
         let second = vec![2u8; 20 * PAGE];
         assert_eq!(second.as_ptr(), place, "the same pages again");
         drop(second);
+        assert_eq!(pieces::kept(), 20 * PAGE);
+        // What has no room in what is kept takes the place of as much of it: never
+        // more is held than was in use at once.
+        let third = vec![3u8; 15 * PAGE];
+        let fourth = vec![4u8; 12 * PAGE];
+        assert_eq!(pieces::kept(), 0, "12 pages replace the 5 that were left");
+        drop((third, fourth));
         keep_at_most(0);
         assert!(vec![0u8; 20 * PAGE].iter().all(|&byte| byte == 0));
     }

@@ -84,6 +84,12 @@ pub(crate) unsafe fn free(start: *mut u8, len: usize) {
     }
 }
 
+/// Bytes that are kept now.
+#[cfg(test)]
+pub(crate) fn kept() -> usize {
+    with(|pool| pool.kept.total())
+}
+
 /// Nothing in here allocates or panics, so that the lock is never poisoned.
 fn with<T>(work: impl FnOnce(&mut Pool) -> T) -> T {
     work(&mut POOL.lock().unwrap_or_else(PoisonError::into_inner))
