@@ -8,6 +8,9 @@ use tessgraph_geometry::glam::DVec3;
 use tessgraph_geometry::surface::Surface;
 use tessgraph_geometry::{Mesh, Unmonitored};
 
+/// How far points move between two questions, in edge lengths.
+const REACH: f64 = 0.1;
+
 fn vectors(points: Vec<[f64; 3]>) -> Vec<DVec3> {
     points.into_iter().map(DVec3::from).collect()
 }
@@ -86,10 +89,13 @@ fn compare(bench: &Bench, kernel: &str, meshes: &Meshes<'_>, points: &[DVec3]) {
 /// The same queries, each point moved by up to a tenth of an edge length.
 fn ask_again(bench: &Bench, surface: &Surface, points: &[DVec3]) {
     let places: Vec<[f64; 3]> = points.iter().map(|point| point.to_array()).collect();
-    let moved = vectors(shapes::scattered(&places, 0.0, 0.1, 3));
-    let earlier = surface
-        .closest_all(points, &Unmonitored)
-        .expect("nobody stops it");
+    let moved = vectors(shapes::scattered(&places, 0.0, REACH, 3));
+    let follow = || surface.follow(points, REACH, &Unmonitored);
+    bench
+        .case("closest place, to be asked again", points.len(), "queries")
+        .ours(|| (), |()| follow().expect("nobody stops it"))
+        .run();
+    let followed = follow().expect("nobody stops it");
     bench
         .case(
             "closest place, again after a small move",
@@ -99,8 +105,8 @@ fn ask_again(bench: &Bench, surface: &Surface, points: &[DVec3]) {
         .ours(
             || (),
             |()| {
-                surface
-                    .closest_again(&moved, &earlier, &Unmonitored)
+                followed
+                    .closest(&moved, &Unmonitored)
                     .expect("nobody stops it")
             },
         )

@@ -7,7 +7,7 @@ use super::leaf::Lanes;
 use super::node::{LEAF, Node, Waiting};
 
 /// Slack of a box's distance against its triangles', above their rounding.
-const SLACK: f64 = 1.0 + 1e-12;
+pub(super) const SLACK: f64 = 1.0 + 1e-12;
 
 /// In place of a leaf to start from: nothing is known yet.
 pub(crate) const ANYWHERE: u32 = u32::MAX;
@@ -44,10 +44,19 @@ pub struct Closest {
 }
 
 /// The best triangle so far.
-struct Best {
-    squared: f64,
+pub(super) struct Best {
+    pub(super) squared: f64,
     triangle: u32,
     leaf: u32,
+}
+
+impl Best {
+    /// Nothing was looked at yet.
+    pub(super) const NONE: Self = Self {
+        squared: f64::MAX,
+        triangle: 0,
+        leaf: 0,
+    };
 }
 
 impl Surface {
@@ -91,11 +100,7 @@ impl Surface {
     /// [`Surface::closest_from`] with memory that many searches share.
     #[inline(always)]
     pub(super) fn closest_with(&self, waiting: &mut Waiting, point: DVec3, leaf: u32) -> Closest {
-        let mut best = Best {
-            squared: f64::MAX,
-            triangle: 0,
-            leaf: 0,
-        };
+        let mut best = Best::NONE;
         if (leaf as usize) < self.leaves.len() {
             self.visit(point, leaf, &mut best, |_| true);
             self.climb(waiting, point, leaf, &mut best);
@@ -110,7 +115,7 @@ impl Surface {
     /// closer: mostly nothing, so that the way up is one of known turns, where
     /// the way down from the root would be one of choices.
     #[inline(always)]
-    fn climb(&self, waiting: &mut Waiting, point: DVec3, leaf: u32, best: &mut Best) {
+    pub(super) fn climb(&self, waiting: &mut Waiting, point: DVec3, leaf: u32, best: &mut Best) {
         let mut seen = LEAF | leaf;
         let mut above = self.leaves[leaf as usize].parent;
         while let Some(node) = self.nodes.get(above as usize) {
@@ -128,7 +133,7 @@ impl Surface {
 
     /// Squared distance of `point` to the boxes of a node's children.
     #[inline(always)]
-    fn squared_distances(&self, node: &Node, point: DVec3) -> Lanes {
+    pub(super) fn squared_distances(&self, node: &Node, point: DVec3) -> Lanes {
         match self.turned.get(node.turned as usize) {
             Some(turned) => turned.squared_distances(point),
             None => node.squared_distances(point),
@@ -160,7 +165,13 @@ impl Surface {
     }
 
     #[inline(always)]
-    fn visit(&self, point: DVec3, leaf: u32, best: &mut Best, counts: impl Fn(u32) -> bool) {
+    pub(super) fn visit(
+        &self,
+        point: DVec3,
+        leaf: u32,
+        best: &mut Best,
+        counts: impl Fn(u32) -> bool,
+    ) {
         let lanes = &self.leaves[leaf as usize];
         let squares = lanes.squared_distances(point);
         for (&squared, &triangle) in squares.iter().zip(&lanes.triangles) {
@@ -176,7 +187,7 @@ impl Surface {
         }
     }
 
-    fn finish(&self, point: DVec3, best: &Best) -> Closest {
+    pub(super) fn finish(&self, point: DVec3, best: &Best) -> Closest {
         let triangle = best.triangle;
         let inside = self.leaves[best.leaf as usize].foot_inside(triangle, point);
         let foot = inside.unwrap_or_else(|| self.triangle(triangle).closest(point));

@@ -3,6 +3,7 @@
 mod boxes;
 mod build;
 mod closest;
+mod follow;
 mod leaf;
 mod node;
 mod order;
@@ -20,6 +21,7 @@ use glam::DVec3;
 pub(crate) use boxes::{BoxTree, overlap};
 pub(crate) use closest::ANYWHERE;
 pub use closest::{Closest, Feature};
+pub use follow::Followed;
 pub use ray::{Facing, Hit};
 pub use rim::Border;
 pub(crate) use rim::{Measured, Piece};

@@ -37,44 +37,6 @@ impl Surface {
         )
     }
 
-    /// [`Surface::closest_all`] for points that have moved a little since `earlier`
-    /// was found for them: the same answers, sooner.
-    ///
-    /// Each search starts at what was closest before, which bounds it from the
-    /// start and is all that is taken over: however far a point has moved, its
-    /// answer is that of a new search. Cost: O(points · log triangles).
-    ///
-    /// # Panics
-    /// If there are not as many points as places.
-    ///
-    /// # Errors
-    /// [`GeometryError::Cancelled`].
-    pub fn closest_again(
-        &self,
-        points: &[DVec3],
-        earlier: &[Closest],
-        monitor: &dyn Monitor,
-    ) -> Result<Vec<Closest>, GeometryError> {
-        assert_eq!(points.len(), earlier.len(), "one earlier place a point");
-        let chunks = points.par_chunks(CHUNK).zip(earlier.par_chunks(CHUNK));
-        let search = |(points, earlier): (&[DVec3], &[Closest])| {
-            monitor.check()?;
-            let mut waiting = Waiting::default();
-            Ok(widened(
-                #[inline(always)]
-                || {
-                    let mut found = Vec::with_capacity(points.len());
-                    for (&point, earlier) in points.iter().zip(earlier) {
-                        found.push(self.closest_with(&mut waiting, point, earlier.leaf));
-                    }
-                    found
-                },
-            ))
-        };
-        let found: Vec<Vec<Closest>> = chunks.map(search).collect::<Result<_, GeometryError>>()?;
-        Ok(found.concat())
-    }
-
     /// The distance to each of `points` under a border rule, and whether the
     /// closest place of the mesh lies on its border; as [`Surface::closest_all`].
     ///

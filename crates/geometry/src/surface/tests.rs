@@ -286,14 +286,37 @@ fn searches_from_anywhere_agree() {
         let mut noise = Noise(11);
         let points: Vec<_> = (0..500).map(|_| noise.point() * 6.0).collect();
         let all = surface.closest_all(&points, &Unmonitored).unwrap();
-        let moved: Vec<_> = points.iter().map(|&p| p + noise.point() * 2.0).collect();
-        let again = surface.closest_again(&moved, &all, &Unmonitored).unwrap();
-        for (&point, found) in moved.iter().zip(again) {
+        for (&point, found) in points.iter().zip(all) {
             assert_eq!(found, surface.closest(point));
             assert_eq!(
                 (found.distance, found.triangle),
                 brute_force(&surface, point)
             );
+        }
+    }
+}
+
+/// Points that stay, go as far as was said, and farther, up to where no list of
+/// theirs holds; and lists cut short, of points with very many triangles about.
+#[test]
+fn followed_points_are_found_however_far_they_go() {
+    let sheet = crate::test_shapes::grid(40, 40, |x, y| [9.0 * x, 9.0 * y, x * x - 3.0 * y * x]);
+    let sphere = crate::test_shapes::sphere(40, 24);
+    for mesh in [sheet, soup(900, 4), sphere] {
+        let surface = surface(&mesh);
+        let mut noise = Noise(11);
+        // The first is as far from all of a sphere.
+        let points = (0..400).map(|k| noise.point() * if k == 0 { 0.0 } else { 6.0 });
+        let points: Vec<_> = points.collect();
+        for reach in [0.0, 0.1, 3.0] {
+            let followed = surface.follow(&points, reach, &Unmonitored).unwrap();
+            let all = surface.closest_all(&points, &Unmonitored).unwrap();
+            assert_eq!(followed.places(), all);
+            for step in [0.0, 0.05, 0.2, 4.0] {
+                let moved: Vec<_> = points.iter().map(|&p| p + noise.point() * step).collect();
+                let found = followed.closest(&moved, &Unmonitored).unwrap();
+                assert_eq!(found, surface.closest_all(&moved, &Unmonitored).unwrap());
+            }
         }
     }
 }
@@ -325,8 +348,13 @@ fn a_million_queries_agree_with_brute_force() {
             })
             .collect();
         let all = surface.closest_all(&points, &Unmonitored).unwrap();
-        let again = surface.closest_again(&points, &all, &Unmonitored).unwrap();
+        let followed = surface.follow(&points, 0.1, &Unmonitored).unwrap();
+        let again = followed.closest(&points, &Unmonitored).unwrap();
         assert_eq!(all, again);
+        let nearby = |&point: &DVec3| point + noise.point() * 0.15;
+        let moved: Vec<_> = points.iter().map(nearby).collect();
+        let again = followed.closest(&moved, &Unmonitored).unwrap();
+        assert_eq!(again, surface.closest_all(&moved, &Unmonitored).unwrap());
         let wrong = |(&point, found): (&DVec3, &Closest)| {
             (found.distance, found.triangle) != brute_force(&surface, point)
         };
