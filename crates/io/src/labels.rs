@@ -28,6 +28,13 @@ impl<K: Clone + Eq + Hash> Runs<K> {
         }
     }
 
+    /// Adds the runs of a part whose faces are counted from `face` on.
+    pub(crate) fn append(&mut self, face: usize, part: &Self) {
+        for (start, key) in &part.runs {
+            self.start(face + start, key.clone());
+        }
+    }
+
     /// Labels of `faces` faces: distinct labels in the order of their first
     /// use. `label` makes a label of a key, or `None` for "no label".
     pub(crate) fn finish<L: Clone + Eq + Hash>(

@@ -18,6 +18,14 @@ impl Counted {
         self.count += 1;
     }
 
+    /// Adds what was counted further behind in the file.
+    pub(crate) fn append(&mut self, behind: Self) {
+        if self.count == 0 {
+            self.first = behind.first;
+        }
+        self.count += behind.count;
+    }
+
     /// The first byte noted, if any was.
     pub(crate) fn first(&self) -> Option<usize> {
         (self.count > 0).then_some(self.first)

@@ -33,7 +33,7 @@ impl Parser<'_> {
     #[cold]
     pub(super) fn other_statement(&mut self, start: usize) -> Result<(), IoError> {
         let word = self.scanner.word();
-        self.known_statements += 1;
+        self.said.known += 1;
         match word {
             // With a joined line end, or nothing, behind the name.
             b"v" => return self.vertex(start),
@@ -43,29 +43,29 @@ impl Parser<'_> {
             b"f" | b"fo" => return self.face(start),
             b"g" => {
                 let names = self.scanner.rest();
-                self.groups.start(self.face_count(), names);
+                self.said.groups.start(self.said.ends.len(), names);
             }
             b"o" => {
                 let name = self.scanner.rest();
-                self.objects.start(self.face_count(), name);
+                self.said.objects.start(self.said.ends.len(), name);
             }
             b"usemtl" => {
                 let name = self.scanner.rest();
-                self.materials.start(self.face_count(), name);
+                self.said.materials.start(self.said.ends.len(), name);
             }
             b"mtllib" => {
                 let names = self.scanner.rest();
-                self.libraries.push((names, start));
+                self.said.libraries.push((names, start));
             }
             b"t" => self.tag(start),
-            b"l" | b"p" => self.passed_over.lines_and_points.note(start),
-            b"call" | b"csh" => self.passed_over.commands.note(start),
-            _ if FREE_FORM.contains(&word) => self.passed_over.free_form.note(start),
+            b"l" | b"p" => self.said.passed_over.lines_and_points.note(start),
+            b"call" | b"csh" => self.said.passed_over.commands.note(start),
+            _ if FREE_FORM.contains(&word) => self.said.passed_over.free_form.note(start),
             _ if LOOKS.contains(&word) => {}
             _ if is_merge_mark(word) => return Err(self.merge_mark(start)),
             _ => {
-                self.known_statements -= 1;
-                self.passed_over.unknown.note(start);
+                self.said.known -= 1;
+                self.said.passed_over.unknown.note(start);
             }
         }
         Ok(())
@@ -143,7 +143,7 @@ impl Parser<'_> {
 
     #[cold]
     pub(super) fn no_such_vertex(&self, at: usize, index: i64) -> IoError {
-        let count = self.positions.len();
+        let count = self.counts().vertices;
         let cause = match index {
             0 => "the face names vertex 0, but vertices are counted from 1".to_owned(),
             1.. => {

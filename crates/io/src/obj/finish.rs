@@ -5,38 +5,44 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 use tessgraph_geometry::{Attribute, AttributeValues, Domain, Mesh, Topology, glam};
 
-use super::parse::{NONE, Parser};
+use super::statements::{NONE, Statements};
 use super::{materials, tags};
 use crate::error::{FaultKind, IoError, Place, quote};
 use crate::warnings::{self, count};
 use crate::{Loaded, Resolve, text};
 
-/// Makes the mesh of a file whose statements have all been read.
-pub(super) fn finish(mut parser: Parser<'_>, resolve: &mut Resolve<'_>) -> Result<Loaded, IoError> {
-    let bytes = parser.scanner.bytes;
-    check_content(&parser)?;
+/// Makes the mesh that the statements of a file have said.
+pub(super) fn finish(
+    bytes: &[u8],
+    mut said: Statements<'_>,
+    resolve: &mut Resolve<'_>,
+) -> Result<Loaded, IoError> {
+    check_content(bytes, &said)?;
     let mut warnings = Vec::new();
-    report(&parser, &mut warnings);
-    let faces = parser.face_count();
-    let offsets = std::mem::take(&mut parser.offsets);
-    let corners = std::mem::take(&mut parser.corners);
-    let topology = Topology::new(parser.positions.len(), offsets, corners)?;
-    let positions = std::mem::take(&mut parser.positions);
+    report(bytes, &said, &mut warnings);
+    let faces = said.ends.len();
+    let mut offsets = std::mem::take(&mut said.ends);
+    offsets.insert(0, 0);
+    let corners = std::mem::take(&mut said.corners);
+    let topology = Topology::new(said.positions.len(), offsets, corners)?;
+    let positions = std::mem::take(&mut said.positions);
     let mut mesh = Mesh::new(positions, Arc::new(topology))?;
-    mesh = add_corner_values(&mut parser, mesh, &mut warnings)?;
-    if !parser.colors.is_empty() {
-        let values = AttributeValues::Vector3(std::mem::take(&mut parser.colors).into());
+    mesh = add_corner_values(&mut said, mesh, &mut warnings)?;
+    if !said.colors.is_empty() {
+        let mut colors = std::mem::take(&mut said.colors);
+        colors.resize(mesh.vertex_count(), DVec3::ONE);
+        let values = AttributeValues::Vector3(colors.into());
         mesh = mesh.with_attribute(Attribute::new("color", Domain::Vertex, values))?;
     }
-    mesh = tags::apply(&parser.tags, mesh, bytes, &mut warnings)?;
-    let (objects, groups) = (&parser.objects, &parser.groups);
+    mesh = tags::apply(&said.tags, mesh, bytes, &mut warnings)?;
+    let (objects, groups) = (&said.objects, &said.groups);
     mesh = mesh.with_objects(objects.finish(faces, |name| name_of(name))?)?;
     mesh = mesh.with_groups(groups.finish(faces, |names| names_of(names))?)?;
-    mesh = materials::add(&parser, mesh, resolve, &mut warnings)?;
+    mesh = materials::add(bytes, &said, mesh, resolve, &mut warnings)?;
     Ok(Loaded {
         mesh,
         warnings,
-        boundary: parser.tags.boundary,
+        boundary: said.tags.boundary,
     })
 }
 
@@ -62,16 +68,15 @@ fn names_of(names: &[u8]) -> Option<Vec<String>> {
 }
 
 /// Refuses a file that holds no polygons and nothing like them.
-fn check_content(parser: &Parser<'_>) -> Result<(), IoError> {
-    let passed = &parser.passed_over;
-    let bytes = parser.scanner.bytes;
-    if let (0, Some(at)) = (parser.face_count(), passed.free_form.first()) {
+fn check_content(bytes: &[u8], said: &Statements<'_>) -> Result<(), IoError> {
+    let passed = &said.passed_over;
+    if let (0, Some(at)) = (said.ends.len(), passed.free_form.first()) {
         let cause = "the file has free-form curves or surfaces, but no polygons";
         let help = "mesh the surfaces in the program that made them, then export again";
         let place = text::place(bytes, at);
         return Err(IoError::new(FaultKind::Unsupported, place, cause, help));
     }
-    if parser.known_statements > 0 {
+    if said.known > 0 {
         return Ok(());
     }
     match passed.unknown.first() {
@@ -98,8 +103,8 @@ fn check_content(parser: &Parser<'_>) -> Result<(), IoError> {
 }
 
 /// Says what was passed over.
-fn report(parser: &Parser<'_>, warnings: &mut Vec<String>) {
-    let (bytes, passed) = (parser.scanner.bytes, &parser.passed_over);
+fn report(bytes: &[u8], said: &Statements<'_>, warnings: &mut Vec<String>) {
+    let passed = &said.passed_over;
     let mut say = |counted: &warnings::Counted, what| counted.report(bytes, what, warnings);
     let lines = [
         "line or point (`l`, `p`) was passed over",
@@ -146,22 +151,22 @@ fn report(parser: &Parser<'_>, warnings: &mut Vec<String>) {
         "subdivision tags of other kinds were passed over",
     ];
     say(&passed.other_tags, tags);
-    if parser.face_count() == 0 {
+    if said.ends.is_empty() {
         warnings.push("the file has no faces".to_owned());
     }
 }
 
 /// Adds `uv` and `normal` where corners name them.
 fn add_corner_values(
-    parser: &mut Parser<'_>,
+    said: &mut Statements<'_>,
     mut mesh: Mesh,
     warnings: &mut Vec<String>,
 ) -> Result<Mesh, IoError> {
     let corners = mesh.corner_count();
-    let uvs = std::mem::take(&mut parser.corner_uvs);
+    let uvs = std::mem::take(&mut said.corner_uvs);
     if let Some(values) = gather(
         uvs,
-        &parser.uvs,
+        &said.uvs,
         DVec2::ZERO,
         corners,
         "texture coordinate",
@@ -170,10 +175,10 @@ fn add_corner_values(
         let values = AttributeValues::Vector2(values.into());
         mesh = mesh.with_attribute(Attribute::new("uv", Domain::Corner, values))?;
     }
-    let normals = std::mem::take(&mut parser.corner_normals);
+    let normals = std::mem::take(&mut said.corner_normals);
     if let Some(values) = gather(
         normals,
-        &parser.normals,
+        &said.normals,
         DVec3::ZERO,
         corners,
         "normal",

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use tessgraph_geometry::{Labels, Material, Mesh, NO_LABEL};
 
 use super::finish::name_of;
-use super::parse::Parser;
+use super::statements::Statements;
 use crate::error::{IoError, quote, shorten};
 use crate::text::{self, Scanner};
 use crate::warnings::{Counted, line};
@@ -16,20 +16,21 @@ use crate::{Resolve, uri};
 /// material that none defines, costs a warning; the material then has only
 /// its name.
 pub(super) fn add(
-    parser: &Parser<'_>,
+    bytes: &[u8],
+    said: &Statements<'_>,
     mesh: Mesh,
     resolve: &mut Resolve<'_>,
     warnings: &mut Vec<String>,
 ) -> Result<Mesh, IoError> {
-    let names = parser
+    let names = said
         .materials
         .finish(mesh.face_count(), |name| name_of(name))?;
     if names.is_empty() {
         return Ok(mesh);
     }
     let mut defined = HashMap::new();
-    for &(library, at) in &parser.libraries {
-        let at_line = line(parser.scanner.bytes, at);
+    for &(library, at) in &said.libraries {
+        let at_line = line(bytes, at);
         for (name, content) in load(library, at_line, resolve, warnings) {
             read_library(&name, &content, &mut defined, warnings);
         }
@@ -43,7 +44,7 @@ pub(super) fn add(
         }
     });
     let materials = materials.collect();
-    if !undefined.is_empty() && !parser.libraries.is_empty() && !defined.is_empty() {
+    if !undefined.is_empty() && !said.libraries.is_empty() && !defined.is_empty() {
         let more = undefined.len().saturating_sub(4);
         undefined.truncate(4);
         let more = if more > 0 {

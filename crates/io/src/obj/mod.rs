@@ -19,6 +19,8 @@ mod faults;
 mod finish;
 mod materials;
 mod parse;
+mod parts;
+mod statements;
 mod tags;
 mod write;
 
@@ -27,9 +29,8 @@ mod tests;
 
 use tessgraph_geometry::Monitor;
 
-use crate::error::{FaultKind, IoError, Place};
+use crate::error::IoError;
 use crate::{Format, Loaded, Resolve, sniff};
-use parse::Parser;
 
 pub use materials::write_mtl;
 pub(crate) use write::lost_attributes;
@@ -47,21 +48,5 @@ pub(crate) fn read(
     if bytes.trim_ascii().is_empty() || sniff::recognise(bytes).is_some() {
         return Err(sniff::wrong_content(Format::Obj, bytes));
     }
-    let mut parser = Parser::new(bytes, usize::MAX, monitor);
-    parser.run()?;
-    if parser.highest_vertex() > parser.positions.len() {
-        // A face may come before its vertices, so the count was not known. The
-        // second pass knows it and stops at the place.
-        let count = parser.positions.len();
-        return match Parser::new(bytes, count, monitor).run() {
-            Err(error) => Err(error),
-            Ok(()) => Err(IoError::new(
-                FaultKind::OutOfRange,
-                Place::File,
-                "a face names a vertex that does not exist",
-                "export it again",
-            )),
-        };
-    }
-    finish::finish(parser, resolve)
+    finish::finish(bytes, parts::statements(bytes, monitor)?, resolve)
 }

@@ -1,99 +1,53 @@
-//! One pass over the bytes of an OBJ file.
+//! The statements of an OBJ file, or of a part of it.
 
 use glam::{DVec2, DVec3};
 use tessgraph_geometry::Monitor;
 use tessgraph_geometry::glam;
 
-use super::tags::Tags;
+use super::statements::{Counts, NONE, Statements};
 use crate::error::IoError;
-use crate::labels::Runs;
-use crate::text::{BadNumber, Scanner, without_bom};
-use crate::warnings::Counted;
-
-/// Marks a corner without a texture coordinate or normal.
-pub(super) const NONE: u32 = u32::MAX;
+use crate::text::{BadNumber, Scanner};
 
 /// Statements between two looks at the monitor.
 const POLL: usize = 1 << 14;
 
-/// What was passed over, for one warning each.
-#[derive(Debug, Default)]
-pub(super) struct PassedOver {
-    pub(super) lines_and_points: Counted,
-    pub(super) free_form: Counted,
-    pub(super) commands: Counted,
-    pub(super) unknown: Counted,
-    pub(super) extra_numbers: Counted,
-    pub(super) bad_colors: Counted,
-    pub(super) bad_normals: Counted,
-    pub(super) bad_tags: Counted,
-    pub(super) other_tags: Counted,
-}
-
-/// The state of reading: everything the file has said so far.
+/// Reads the statements of a part of a file.
 pub(super) struct Parser<'a> {
     pub(super) scanner: Scanner<'a>,
     monitor: &'a dyn Monitor,
     /// A face that names a vertex from here on is an error.
     pub(super) vertex_limit: usize,
-    /// One more than the highest vertex a face names.
-    highest: usize,
-    pub(super) positions: Vec<DVec3>,
-    /// One per vertex, or none at all.
-    pub(super) colors: Vec<DVec3>,
-    pub(super) uvs: Vec<DVec2>,
-    pub(super) normals: Vec<DVec3>,
-    pub(super) offsets: Vec<u32>,
-    pub(super) corners: Vec<u32>,
-    /// Texture coordinate of each corner; shorter where the last have none.
-    pub(super) corner_uvs: Vec<u32>,
-    /// Normal of each corner; shorter where the last have none.
-    pub(super) corner_normals: Vec<u32>,
-    pub(super) groups: Runs<&'a [u8]>,
-    pub(super) objects: Runs<&'a [u8]>,
-    pub(super) materials: Runs<&'a [u8]>,
-    /// Names of material libraries, each with its place.
-    pub(super) libraries: Vec<(&'a [u8], usize)>,
-    pub(super) tags: Tags,
-    pub(super) passed_over: PassedOver,
-    /// Statements that OBJ knows.
-    pub(super) known_statements: usize,
+    /// What the parts before say; `None` if that is not known yet.
+    pub(super) before: Option<Counts>,
+    /// A face counted backwards from what is not known yet: its indices are
+    /// wrong, and the part has to be read again.
+    pub(super) counted_backwards: bool,
+    pub(super) said: Statements<'a>,
 }
 
 impl<'a> Parser<'a> {
-    pub(super) fn new(bytes: &'a [u8], vertex_limit: usize, monitor: &'a dyn Monitor) -> Self {
-        let start = bytes.len() - without_bom(bytes).len();
+    /// A parser from byte `start` on to the end of `bytes`, which puts what it
+    /// reads into `said`, whatever there was.
+    pub(super) fn new(
+        bytes: &'a [u8],
+        start: usize,
+        mut said: Statements<'a>,
+        monitor: &'a dyn Monitor,
+    ) -> Self {
+        said.clear();
         Self {
             scanner: Scanner::new(bytes, start),
             monitor,
-            vertex_limit,
-            highest: 0,
-            positions: Vec::new(),
-            colors: Vec::new(),
-            uvs: Vec::new(),
-            normals: Vec::new(),
-            offsets: vec![0],
-            corners: Vec::new(),
-            corner_uvs: Vec::new(),
-            corner_normals: Vec::new(),
-            groups: Runs::default(),
-            objects: Runs::default(),
-            materials: Runs::default(),
-            libraries: Vec::new(),
-            tags: Tags::default(),
-            passed_over: PassedOver::default(),
-            known_statements: 0,
+            vertex_limit: usize::MAX,
+            before: None,
+            counted_backwards: false,
+            said,
         }
     }
 
-    /// One more than the highest vertex index that a face names.
-    pub(super) fn highest_vertex(&self) -> usize {
-        self.highest
-    }
-
-    /// Faces read so far.
-    pub(super) fn face_count(&self) -> usize {
-        self.offsets.len() - 1
+    /// All there is so far, of what is known.
+    pub(super) fn counts(&self) -> Counts {
+        self.before.unwrap_or_default().with(&self.said)
     }
 
     /// Reads all statements.
@@ -101,14 +55,12 @@ impl<'a> Parser<'a> {
     /// # Errors
     /// At the first statement that is wrong.
     pub(super) fn run(&mut self) -> Result<(), IoError> {
-        let total = self.scanner.bytes.len() as u64;
         let mut until_poll = 1;
         loop {
             until_poll -= 1;
             if until_poll == 0 {
                 until_poll = POLL;
                 self.monitor.check()?;
-                self.monitor.progress(self.scanner.at as u64, total);
             }
             self.scanner.skip_blanks();
             let ahead = |k: usize| self.scanner.bytes.get(self.scanner.at + k).copied();
@@ -140,7 +92,7 @@ impl<'a> Parser<'a> {
 
     #[inline]
     pub(super) fn vertex(&mut self, start: usize) -> Result<(), IoError> {
-        self.known_statements += 1;
+        self.said.known += 1;
         let mut place = [0.0; 3];
         for (k, value) in place.iter_mut().enumerate() {
             if !self.scanner.more() {
@@ -151,11 +103,11 @@ impl<'a> Parser<'a> {
                 Err(bad) => return Err(self.bad_number(bad, "coordinate")),
             };
         }
-        self.positions.push(DVec3::from(place));
+        self.said.positions.push(DVec3::from(place));
         if self.scanner.more() {
             self.color(start)?;
-        } else if !self.colors.is_empty() {
-            self.colors.push(DVec3::ONE);
+        } else if !self.said.colors.is_empty() {
+            self.said.colors.push(DVec3::ONE);
         }
         Ok(())
     }
@@ -180,25 +132,29 @@ impl<'a> Parser<'a> {
             count += 1;
         }
         if count == 2 || self.scanner.more() {
-            self.passed_over.extra_numbers.note(start);
+            self.said.passed_over.extra_numbers.note(start);
         }
-        if count >= 3 && self.colors.is_empty() {
-            self.colors.resize(self.positions.len() - 1, DVec3::ONE);
+        if count >= 3 && self.said.colors.is_empty() {
+            self.said
+                .colors
+                .resize(self.said.positions.len() - 1, DVec3::ONE);
         }
         if !finite {
-            self.passed_over.bad_colors.note(start);
+            self.said.passed_over.bad_colors.note(start);
         }
         if count >= 3 && finite {
-            self.colors.push(DVec3::new(extra[0], extra[1], extra[2]));
-        } else if !self.colors.is_empty() || count >= 3 {
-            self.colors.push(DVec3::ONE);
+            self.said
+                .colors
+                .push(DVec3::new(extra[0], extra[1], extra[2]));
+        } else if !self.said.colors.is_empty() || count >= 3 {
+            self.said.colors.push(DVec3::ONE);
         }
         Ok(())
     }
 
     /// `vt u [v [w]]`; v is 0 where it is missing, w is not read.
     pub(super) fn uv(&mut self, start: usize) -> Result<(), IoError> {
-        self.known_statements += 1;
+        self.said.known += 1;
         let mut place = [0.0; 2];
         for (k, value) in place.iter_mut().enumerate() {
             if self.scanner.more() {
@@ -210,12 +166,12 @@ impl<'a> Parser<'a> {
                 return Err(self.too_few_numbers(start, "texture coordinate", 0, "a number"));
             }
         }
-        self.uvs.push(DVec2::from(place));
+        self.said.uvs.push(DVec2::from(place));
         Ok(())
     }
 
     pub(super) fn normal(&mut self, start: usize) -> Result<(), IoError> {
-        self.known_statements += 1;
+        self.said.known += 1;
         let mut normal = [0.0; 3];
         for (k, value) in normal.iter_mut().enumerate() {
             if !self.scanner.more() {
@@ -225,32 +181,47 @@ impl<'a> Parser<'a> {
                 Ok(value) => value,
                 // Exporters write NaN as the normal of a degenerate face.
                 Err(BadNumber::NotFinite) => {
-                    self.passed_over.bad_normals.note(start);
-                    self.normals.push(DVec3::ZERO);
+                    self.said.passed_over.bad_normals.note(start);
+                    self.said.normals.push(DVec3::ZERO);
                     return Ok(());
                 }
                 Err(bad) => return Err(self.bad_number(bad, "component of a normal")),
             };
         }
-        self.normals.push(DVec3::from(normal));
+        self.said.normals.push(DVec3::from(normal));
         Ok(())
     }
 
     #[inline]
     pub(super) fn face(&mut self, start: usize) -> Result<(), IoError> {
-        self.known_statements += 1;
-        let first = self.corners.len();
+        self.said.known += 1;
+        let first = self.said.corners.len();
+        let mut highest = self.said.highest;
+        loop {
+            let before = self.scanner.at;
+            let Some(index) = self.scanner.blank_and_digits() else {
+                break;
+            };
+            if index == 0 || index as usize > self.vertex_limit {
+                self.scanner.at = before;
+                break;
+            }
+            highest = highest.max(index as usize);
+            self.said.corners.push(index - 1);
+        }
+        self.said.highest = highest;
+        // Corners of more than a vertex, with several blanks, or wrong.
         while self.scanner.more() {
             self.corner()?;
         }
-        let count = self.corners.len() - first;
+        let count = self.said.corners.len() - first;
         if count < 3 {
             return Err(self.too_few_corners(start, count));
         }
-        if self.corners.len() >= NONE as usize {
+        if self.counts().corners >= NONE as usize {
             return Err(self.too_many_corners(start));
         }
-        self.offsets.push(self.corners.len() as u32);
+        self.said.ends.push(self.said.corners.len() as u32);
         Ok(())
     }
 
@@ -266,7 +237,8 @@ impl<'a> Parser<'a> {
         }
         let vertex = match index {
             1.. => index as u64 as usize - 1,
-            _ => match resolve_backwards(index, self.positions.len()) {
+            0 => return Err(self.no_such_vertex(start, index)),
+            _ => match self.backwards(index, self.counts().vertices) {
                 Some(vertex) => vertex,
                 None => return Err(self.no_such_vertex(start, index)),
             },
@@ -274,22 +246,24 @@ impl<'a> Parser<'a> {
         if vertex >= self.vertex_limit {
             return Err(self.no_such_vertex(start, index));
         }
-        self.highest = self.highest.max(vertex + 1);
+        self.said.highest = self.said.highest.max(vertex + 1);
         if self.scanner.peek() == Some(b'/') {
             let (uv, normal) = self.more_indices(start)?;
             if uv != NONE {
-                self.corner_uvs.resize(self.corners.len(), NONE);
-                self.corner_uvs.push(uv);
+                self.said.corner_uvs.resize(self.said.corners.len(), NONE);
+                self.said.corner_uvs.push(uv);
             }
             if normal != NONE {
-                self.corner_normals.resize(self.corners.len(), NONE);
-                self.corner_normals.push(normal);
+                self.said
+                    .corner_normals
+                    .resize(self.said.corners.len(), NONE);
+                self.said.corner_normals.push(normal);
             }
         }
         if !self.scanner.word_is_over() {
             return Err(self.bad_index(start));
         }
-        self.corners.push(vertex.min(NONE as usize - 1) as u32);
+        self.said.corners.push(vertex.min(NONE as usize - 1) as u32);
         Ok(())
     }
 
@@ -298,7 +272,8 @@ impl<'a> Parser<'a> {
     #[inline]
     fn more_indices(&mut self, start: usize) -> Result<(u32, u32), IoError> {
         let mut parts = [NONE; 2];
-        let counts = [self.uvs.len(), self.normals.len()];
+        let counts = self.counts();
+        let counts = [counts.uvs, counts.normals];
         for (part, count) in parts.iter_mut().zip(counts) {
             if self.scanner.peek() != Some(b'/') {
                 break;
@@ -311,20 +286,25 @@ impl<'a> Parser<'a> {
                 *part = match index {
                     1.. => (index - 1).min(i64::from(NONE - 1)) as u32,
                     // Missing data, as one too high: NONE - 1 is never there.
-                    _ => resolve_backwards(index, count)
+                    _ => self
+                        .backwards(index, count)
                         .map_or(NONE - 1, |index| index.min(NONE as usize - 1) as u32),
                 };
             }
         }
         Ok((parts[0], parts[1]))
     }
-}
 
-/// The element that a negative index means when `count` are known.
-#[inline]
-pub(super) fn resolve_backwards(index: i64, count: usize) -> Option<usize> {
-    if index >= 0 {
-        return None;
+    /// The element that an index below zero means where `count` are known. Where
+    /// not all are, any, and the part has to be read again.
+    fn backwards(&mut self, index: i64, count: usize) -> Option<usize> {
+        if index >= 0 {
+            return None;
+        }
+        if self.before.is_none() {
+            self.counted_backwards = true;
+            return Some(0);
+        }
+        count.checked_sub(usize::try_from(index.unsigned_abs()).ok()?)
     }
-    count.checked_sub(usize::try_from(index.unsigned_abs()).ok()?)
 }

@@ -25,6 +25,15 @@ pub(super) struct Tags {
     pub(super) boundary: Option<i64>,
 }
 
+impl Tags {
+    /// Adds the tags of the part of the file behind this one.
+    pub(super) fn append(&mut self, part: &Self) {
+        self.creases.extend_from_slice(&part.creases);
+        self.corners.extend_from_slice(&part.corners);
+        self.boundary = part.boundary.or(self.boundary);
+    }
+}
+
 /// The numbers of one tag.
 struct Values {
     ints: Vec<i64>,
@@ -46,14 +55,15 @@ impl Parser<'_> {
         self.scanner.skip_blanks();
         let name = self.scanner.word();
         let Some(values) = self.tag_values() else {
-            self.passed_over.bad_tags.note(start);
+            self.said.passed_over.bad_tags.note(start);
             return;
         };
         match name {
             b"crease" => {
                 for (k, ends) in values.ints.chunks_exact(2).enumerate() {
                     if let Some(sharpness) = values.sharpness(k) {
-                        self.tags
+                        self.said
+                            .tags
                             .creases
                             .push(([ends[0], ends[1]], sharpness, start));
                     }
@@ -62,14 +72,14 @@ impl Parser<'_> {
             b"corner" => {
                 for (k, &vertex) in values.ints.iter().enumerate() {
                     if let Some(sharpness) = values.sharpness(k) {
-                        self.tags.corners.push((vertex, sharpness, start));
+                        self.said.tags.corners.push((vertex, sharpness, start));
                     }
                 }
             }
             b"interpolateboundary" => {
-                self.tags.boundary = values.ints.first().copied().or(self.tags.boundary);
+                self.said.tags.boundary = values.ints.first().copied().or(self.said.tags.boundary);
             }
-            _ => self.passed_over.other_tags.note(start),
+            _ => self.said.passed_over.other_tags.note(start),
         }
     }
 

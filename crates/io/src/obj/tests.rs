@@ -514,3 +514,61 @@ proptest! {
         }
     }
 }
+
+/// Lines of all kinds, right and wrong.
+const LINES: &[&str] = &[
+    "v 0 0 0\n",
+    "v 1 0 0\r\n",
+    "v 1 1 0 1 0.5 0\n",
+    "v 0 1 nan\n",
+    "\tv 2 \\\n 1 0\n",
+    "vt 0.25 1\n",
+    "vn 0 0 1\r",
+    "vn 0 nan 1\n",
+    "f 1 2 3\n",
+    "f 4/1/1 3/2 1//2\r\n",
+    "f -1 -2 -3\n",
+    "f -1/-1 -3/-1/-1 -2\\\r\n -4//-1\n",
+    "f 9 1 2\n",
+    "f 1 2\n",
+    "g left right\n",
+    "o panel\\\n s\n",
+    "usemtl steel\n",
+    "mtllib \\\r\n none.mtl\n",
+    "t crease 2/1/0 0 1 2.5\n",
+    "t interpolateboundary 1/0/0 1\n",
+    "l 1 2\n",
+    "# a comment \\\n",
+    "what is this\n",
+    "\n",
+];
+
+proptest! {
+    #[test]
+    fn parts_of_any_size_say_what_the_whole_says(
+        lines in prop::collection::vec(0..LINES.len(), 0..60), part in 0usize..80,
+    ) {
+        // Every fourth file may have mistakes.
+        let good = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvn 1 0 0\nvn 0 1 0\n";
+        let wrong = ["v 0 1 nan\n", "f 9 1 2\n", "f 1 2\n"];
+        let kept = |&line: &&str| lines.len() % 4 == 0 || !wrong.contains(&line);
+        let text = lines.iter().map(|&line| LINES[line]).filter(kept);
+        let text = good.to_owned() + &text.collect::<String>();
+        let bytes = text.as_bytes();
+        let read = |part: usize| {
+            let said = super::parts::in_parts(bytes, part, usize::MAX, &Unmonitored)?;
+            super::finish::finish(bytes, said, &mut no_files)
+        };
+        match (read(part), read(usize::MAX / 2)) {
+            (Ok(parts), Ok(whole)) => {
+                prop_assert_eq!(parts.mesh.digest(), whole.mesh.digest());
+                prop_assert_eq!(parts.warnings, whole.warnings);
+                prop_assert_eq!(parts.boundary, whole.boundary);
+            }
+            (parts, whole) => {
+                let text = |read: Result<Loaded, IoError>| read.err().map(|error| format!("{error:?}"));
+                prop_assert_eq!(text(parts), text(whole));
+            }
+        }
+    }
+}
