@@ -4,6 +4,7 @@ mod filter;
 mod hinge;
 mod polygon;
 mod predicate;
+mod sieve;
 #[cfg(test)]
 mod tests;
 
@@ -20,6 +21,7 @@ use crate::surface::BoxTree;
 use crate::weld::clusters;
 use crate::{Field, GeometryError, Mesh, Monitor, Quantity};
 use polygon::{Polygon, Relation, relation};
+use sieve::Sieve;
 
 /// Which pairs of faces are looked at.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -113,15 +115,18 @@ pub fn intersections(
     let (component, components) = components(mesh, monitor)?;
     let mut found = Found::default();
     if mesh.face_count() > 0 {
-        let wanted = |a: u32, b: u32| {
-            let same = component[a as usize] == component[b as usize];
-            match options.between {
-                Between::Components => !same,
-                Between::Inside => same,
+        let same = |a: u32, b: u32| component[a as usize] == component[b as usize];
+        found = search(
+            mesh,
+            #[inline(always)]
+            |a, b| match options.between {
+                Between::Components => !same(a, b),
+                Between::Inside => same(a, b),
                 Between::All => true,
-            }
-        };
-        found = search(mesh, &wanted, tolerance, monitor)?;
+            },
+            tolerance,
+            monitor,
+        )?;
     }
     let mut component_pairs: Vec<[u32; 2]> = found
         .pairs
@@ -241,7 +246,7 @@ struct Found {
 /// Looks at all wanted pairs whose boxes meet.
 fn search(
     mesh: &Mesh,
-    wanted: &(dyn Fn(u32, u32) -> bool + Sync),
+    wanted: impl Fn(u32, u32) -> bool + Sync,
     tolerance: f64,
     monitor: &dyn Monitor,
 ) -> Result<Found, GeometryError> {
@@ -249,30 +254,37 @@ fn search(
     let places = parallel::map(mesh.corner_count(), monitor, |corner| {
         places[mesh.topology().corners()[corner] as usize]
     })?;
-    let open = parallel::map(mesh.face_count(), monitor, |face| {
-        Polygon::is_open(mesh, face)
-    })?;
     let tree = BoxTree::new(&face_boxes(mesh, monitor)?, monitor)?;
     let parts = tree.parts();
     let done = AtomicU64::new(0);
     let found: Vec<Found> = parts
         .par_iter()
         .map(|&part| {
+            monitor.check()?;
+            let mut sieve = Sieve::new(mesh.positions());
+            let of_face = |face: u32| &places[mesh.topology().corner_range(face as usize)];
+            tree.walk(
+                part,
+                monitor,
+                #[inline(always)]
+                |met| {
+                    for &[a, b] in met {
+                        if wanted(a, b) {
+                            sieve.take([a, b], [of_face(a), of_face(b)]);
+                        }
+                    }
+                },
+            )?;
+            sieve.finish();
             let mut found = Found::default();
-            let mut look = |face: u32, other: u32| {
-                if !wanted(face, other) {
-                    return;
-                }
-                let a = Polygon::new(mesh, &places, &open, face);
-                let b = Polygon::new(mesh, &places, &open, other);
+            for pair in sieve.doubtful {
+                let [a, b] = pair.map(|face| Polygon::new(mesh, &places, face));
                 match relation(&a, &b, tolerance) {
                     Relation::Apart => {}
-                    Relation::Contact => found.contacts.push([face, other]),
-                    Relation::Crossing => found.pairs.push([face, other]),
+                    Relation::Contact => found.contacts.push(pair),
+                    Relation::Crossing => found.pairs.push(pair),
                 }
-            };
-            monitor.check()?;
-            tree.walk(part, monitor, &mut look)?;
+            }
             let before = done.fetch_add(1, Ordering::Relaxed);
             monitor.progress(before + 1, parts.len() as u64);
             Ok(found)

@@ -2,7 +2,6 @@
 
 use glam::DVec3;
 
-use super::filter;
 use super::hinge::{Hinge, hinges_cross, through_hinge};
 use super::predicate::{Corners, crosses, extent, is_folded, meets, open_axis};
 use crate::Mesh;
@@ -26,35 +25,19 @@ pub(super) struct Polygon<'a> {
     positions: &'a [DVec3],
     places: &'a [u32],
     vertices: &'a [u32],
-    /// Every triangle of its fans is known to have area.
-    open: bool,
 }
 
 impl<'a> Polygon<'a> {
     /// The face of that number; `places` has one number per corner, equal where
-    /// positions are, `open` what [`Polygon::is_open`] says of each face.
+    /// positions are.
     #[inline]
-    pub(super) fn new(mesh: &'a Mesh, places: &'a [u32], open: &[bool], face: u32) -> Self {
+    pub(super) fn new(mesh: &'a Mesh, places: &'a [u32], face: u32) -> Self {
         let range = mesh.topology().corner_range(face as usize);
         Self {
             positions: mesh.positions(),
             vertices: &mesh.topology().corners()[range.clone()],
             places: &places[range],
-            open: open[face as usize],
         }
-    }
-
-    /// Whether every triangle of the fans from corners 0 and 1 of a face has
-    /// area: asked once a face, not for each pair of faces.
-    pub(super) fn is_open(mesh: &Mesh, face: usize) -> bool {
-        let vertices = mesh.face(face);
-        let count = vertices.len();
-        let at = |corner: usize| mesh.positions()[vertices[corner % count] as usize];
-        let choices = if count == 3 { 1 } else { 2 };
-        (0..choices).all(|choice| {
-            (choice + 1..choice + count - 1)
-                .all(|next| open_axis([at(choice), at(next), at(next + 1)]).is_some())
-        })
     }
 
     /// How many ways to draw diagonals are tried.
@@ -80,9 +63,7 @@ impl<'a> Polygon<'a> {
         let corners = [choice, choice + index + 1, choice + index + 2];
         let place = corners.map(|corner| self.places[corner % self.places.len()]);
         let at = place.map(|place| self.positions[place as usize]);
-        if !self.open {
-            open_axis(at)?;
-        }
+        open_axis(at)?;
         Some(Corners { at, place })
     }
 
@@ -116,19 +97,6 @@ impl<'a> Polygon<'a> {
         self.places.iter().filter(shared).count()
     }
 
-    /// Whether it is certain without exact predicates that they have nothing in
-    /// common but what they share.
-    #[inline]
-    fn are_apart(&self, other: &Self) -> bool {
-        match (self.places, other.places) {
-            (&[a, b, c], &[d, e, f]) => filter::apart((&[a, b, c], &[d, e, f]), self.positions),
-            (&[a, b, c, d], &[e, f, g, h]) => {
-                filter::apart((&[a, b, c, d], &[e, f, g, h]), self.positions)
-            }
-            _ => false,
-        }
-    }
-
     fn bounds(&self) -> [DVec3; 2] {
         let none = [DVec3::INFINITY, DVec3::NEG_INFINITY];
         self.places.iter().fold(none, |[low, high], &place| {
@@ -152,9 +120,6 @@ fn bounds_of(at: &[DVec3; 3]) -> [DVec3; 2] {
 /// They meet if the triangles of their fans from corner 0 do, and cross if some
 /// do for every choice of fans from corners 0 and 1.
 pub(super) fn relation(a: &Polygon<'_>, b: &Polygon<'_>, tolerance: f64) -> Relation {
-    if a.are_apart(b) {
-        return Relation::Apart;
-    }
     let bounds = [a.bounds(), b.bounds()];
     let meet = a.any(0, bounds[1], |_, one| {
         b.any(0, bounds_of(&one.at), |_, two| meets(one, two))

@@ -2,8 +2,9 @@
 
 use glam::DVec3;
 
-use super::leaf::{Lanes, WIDTH, greater};
+use super::leaf::{Lanes, WIDTH};
 use super::order::{curve_order, index_of};
+use crate::vectors::{greater, widened};
 use crate::{GeometryError, Monitor, parallel};
 
 /// Many boxes along a space-filling curve, and over them boxes of four, of four
@@ -33,6 +34,9 @@ pub(crate) struct Pairs {
 
 /// Fours that a level needs to be one that work is handed out by.
 const SHARED: usize = 128;
+
+/// Pairs that meet after which a walk tells them.
+const TOLD: usize = 256;
 
 /// Level from which on a walk asks whether to stop.
 const ASKING: usize = 2;
@@ -92,8 +96,9 @@ impl BoxTree {
         parts
     }
 
-    /// Calls `visit(a, b)` with a < b for all pairs of boxes of a part that meet,
-    /// borders included, in an order that depends on the boxes alone.
+    /// Calls `visit` with some of the pairs [a, b], a < b, of boxes of a part that
+    /// meet, borders included, again and again until it had them all; in an order
+    /// that depends on the boxes alone.
     ///
     /// # Errors
     /// [`GeometryError::Cancelled`].
@@ -101,33 +106,49 @@ impl BoxTree {
         &self,
         part: Pairs,
         monitor: &dyn Monitor,
-        visit: &mut impl FnMut(u32, u32),
+        mut visit: impl FnMut(&[[u32; 2]]),
     ) -> Result<(), GeometryError> {
-        if part.level == 0 {
-            self.each_below(part, |first, second| {
-                if first != second {
-                    let (a, b) = (self.order[first], self.order[second]);
-                    visit(a.min(b), a.max(b));
+        let mut waiting = vec![part];
+        let mut met = Vec::with_capacity(TOLD + WIDTH * WIDTH);
+        widened(
+            #[inline(always)]
+            || {
+                while let Some(part) = waiting.pop() {
+                    if part.level >= ASKING {
+                        monitor.check()?;
+                    }
+                    self.open(part, &mut waiting, &mut met);
+                    if met.len() >= TOLD {
+                        visit(&met);
+                        met.clear();
+                    }
                 }
-            });
-            return Ok(());
-        }
-        if part.level >= ASKING {
-            monitor.check()?;
-        }
-        let mut outcome = Ok(());
-        self.each_below(part, |first, second| {
+                visit(&met);
+                Ok(())
+            },
+        )
+    }
+
+    /// Adds what is one level below a part to what waits, or to the pairs that met.
+    #[inline(always)]
+    fn open(&self, part: Pairs, waiting: &mut Vec<Pairs>, met: &mut Vec<[u32; 2]>) {
+        if part.level > 0 {
             let level = part.level - 1;
-            if outcome.is_ok() {
-                let below = Pairs {
+            self.each_below(part, |first, second| {
+                waiting.push(Pairs {
                     level,
                     first,
                     second,
-                };
-                outcome = self.walk(below, monitor, visit);
+                });
+            });
+            return;
+        }
+        self.each_below(part, |first, second| {
+            if first != second {
+                let (a, b) = (self.order[first], self.order[second]);
+                met.push([a.min(b), a.max(b)]);
             }
         });
-        outcome
     }
 
     /// Calls `visit` with the places, one level below, of all pairs of boxes that
@@ -138,11 +159,16 @@ impl BoxTree {
         let (first, second) = (&fours[part.first], &fours[part.second]);
         for a in 0..WIDTH {
             let gaps = second.gaps(first.get(a));
-            let from = if part.first == part.second { a } else { 0 };
-            for (b, &gap) in gaps.iter().enumerate().skip(from) {
-                if gap <= 0.0 {
-                    visit(WIDTH * part.first + a, WIDTH * part.second + b);
-                }
+            // A byte for each, so that the compiler keeps the four side by side.
+            let meet = gaps.map(|gap| u8::from(gap <= 0.0));
+            let mut meeting = u32::from_le_bytes(meet);
+            if part.first == part.second {
+                meeting &= u32::MAX << (8 * a);
+            }
+            while meeting != 0 {
+                let b = meeting.trailing_zeros() as usize / 8;
+                visit(WIDTH * part.first + a, WIDTH * part.second + b);
+                meeting &= meeting - 1;
             }
         }
     }
@@ -192,13 +218,14 @@ impl Four {
     /// at most 0 if they share a point; an empty box is infinitely far.
     #[inline(always)]
     fn gaps(&self, [low, high]: [[f64; 3]; 2]) -> Lanes {
-        let mut gaps = [f64::NEG_INFINITY; WIDTH];
-        for axis in 0..3 {
-            for (lane, gap) in gaps.iter_mut().enumerate() {
+        let mut gaps = [0.0; WIDTH];
+        for (lane, gap) in gaps.iter_mut().enumerate() {
+            let along = |axis: usize| {
                 let above = self.low[axis][lane] - high[axis];
                 let below = low[axis] - self.high[axis][lane];
-                *gap = greater(*gap, greater(above, below));
-            }
+                greater(above, below)
+            };
+            *gap = greater(along(0), greater(along(1), along(2)));
         }
         gaps
     }
@@ -235,8 +262,8 @@ mod tests {
             let tree = BoxTree::new(&boxes, &Unmonitored).unwrap();
             let mut found = Vec::new();
             for part in tree.parts() {
-                let mut visit = |a, b| found.push([a, b]);
-                tree.walk(part, &Unmonitored, &mut visit).unwrap();
+                let visit = |met: &[[u32; 2]]| found.extend_from_slice(met);
+                tree.walk(part, &Unmonitored, visit).unwrap();
             }
             found.sort_unstable();
             let all = (0..count as u32).flat_map(|a| (a + 1..count as u32).map(move |b| [a, b]));

@@ -4,12 +4,13 @@ use glam::DVec3;
 
 use super::node::NO_NODE;
 use super::triangle::{Foot, Triangle};
+use crate::vectors::{cross, dot, greater, lesser, minus};
 
 /// Triangles in a leaf, and children of a node.
-pub(super) const WIDTH: usize = 4;
+pub(crate) const WIDTH: usize = 4;
 
 /// One number for each of the four.
-pub(super) type Lanes = [f64; WIDTH];
+pub(crate) type Lanes = [f64; WIDTH];
 
 /// Four triangles with their edges and normals worked out beforehand.
 ///
@@ -140,36 +141,4 @@ fn to_segment(h: [f64; 3], e: [f64; 3], inverse: f64) -> f64 {
     let t = lesser(greater(t, 0.0), 1.0);
     let q = [h[0] - t * e[0], h[1] - t * e[1], h[2] - t * e[2]];
     dot(q, q)
-}
-
-#[inline(always)]
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-#[inline(always)]
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
-}
-
-#[inline(always)]
-fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-/// The smaller of two numbers: one instruction, where `f64::min` must also
-/// look for NaN.
-#[inline(always)]
-pub(super) fn lesser(a: f64, b: f64) -> f64 {
-    if a < b { a } else { b }
-}
-
-/// The larger of two numbers, as [`lesser`].
-#[inline(always)]
-pub(super) fn greater(a: f64, b: f64) -> f64 {
-    if a > b { a } else { b }
 }

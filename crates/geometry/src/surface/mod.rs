@@ -30,6 +30,7 @@ use crate::buffer::Buffer;
 use crate::topology::{NO_EDGE, Topology};
 use crate::{GeometryError, Mesh, Monitor};
 use leaf::Leaf;
+pub(crate) use leaf::{Lanes, WIDTH};
 use node::Node;
 use rim::Rim;
 use triangle::Triangle;

@@ -3,7 +3,8 @@
 use glam::DVec3;
 
 use super::build::{Bounds, MAX_DEPTH};
-use super::leaf::{Lanes, WIDTH, greater, lesser};
+use super::leaf::{Lanes, WIDTH};
+use crate::vectors::{greater, lesser};
 
 /// Set in a reference that means a leaf.
 pub(super) const LEAF: u32 = 1 << 31;
