@@ -12,6 +12,7 @@ mod run;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::sync::Arc;
+use std::time::Duration;
 
 use self::cache::Cache;
 pub use cache::{CacheFolder, CacheStats, FolderStats, GcReport, VerifyReport};
@@ -62,6 +63,17 @@ impl Engine {
     pub fn limiting_disk(self, bytes: u64) -> Self {
         if let Some(cache) = &self.cache {
             cache.set_disk_budget(bytes);
+        }
+        self
+    }
+
+    /// The same engine, which begins to write results to its folder `pause` after
+    /// they were computed: whoever shows them needs the processors first. Does not
+    /// hold up [`Engine::flush`].
+    #[must_use]
+    pub fn storing_after(self, pause: Duration) -> Self {
+        if let Some(cache) = &self.cache {
+            cache.set_pause(pause);
         }
         self
     }

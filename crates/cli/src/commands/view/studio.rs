@@ -24,6 +24,9 @@ use crate::world::Listener;
 /// How often the page is told how far a run is.
 const TICK: Duration = Duration::from_millis(100);
 
+/// In this time a picture is sent, fetched and drawn, which takes all processors.
+const UNTIL_SHOWN: Duration = Duration::from_millis(400);
+
 /// What lives as long as the command.
 pub(super) struct Studio<'a> {
     args: &'a ViewArgs,
@@ -91,7 +94,8 @@ impl<'a> Studio<'a> {
         let engine = if args.engine.no_cache {
             Engine::without_cache()
         } else {
-            args.engine.caching(folder, memory)
+            let engine = args.engine.caching(folder, memory);
+            engine.storing_after(UNTIL_SHOWN)
         };
         Ok(Self {
             args,

@@ -14,6 +14,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
+use std::time::Duration;
 
 use tessgraph_geometry::Topology;
 use tessgraph_geometry::digest::Digest;
@@ -98,6 +99,11 @@ impl Cache {
         if let Some(disk) = &self.disk {
             disk.set_budget(bytes);
         }
+    }
+
+    /// Sets how long results wait before they are written to the folder.
+    pub(super) fn set_pause(&self, pause: Duration) {
+        self.writer.set_pause(pause);
     }
 
     pub(super) fn stats(&self) -> CacheStats {

@@ -1,8 +1,10 @@
 //! Writes results to the cache's folder behind the evaluation's back: syncing
 //! a large file takes longer than many an edit.
 
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{self, Receiver, SyncSender};
 use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
 
 use tessgraph_geometry::Topology;
 use tessgraph_geometry::digest::Digest;
@@ -17,6 +19,9 @@ use crate::value::encode::{Encoder, encode_topology};
 
 /// Results that may wait to be written; they are held in memory meanwhile.
 const MOST_WAITING: usize = 32;
+
+/// Of those, how many wait for a pause.
+const MOST_PAUSING: usize = 16;
 
 /// A node's results, to be written.
 #[derive(Debug)]
@@ -38,15 +43,25 @@ enum Job {
 #[derive(Debug, Default)]
 pub(super) struct Writer {
     jobs: Mutex<Option<SyncSender<Job>>>,
+    /// Milliseconds that results wait.
+    pause: AtomicU64,
 }
 
 impl Writer {
+    /// Has results wait that long before they are written; counts for a thread that
+    /// has not begun.
+    pub(super) fn set_pause(&self, pause: Duration) {
+        let ms = u64::try_from(pause.as_millis()).unwrap_or(u64::MAX);
+        self.pause.store(ms, Ordering::Relaxed);
+    }
+
     /// Has the results written soon; waits only if many are waiting already.
     pub(super) fn store(&self, disk: &Arc<Disk>, work: ToStore) {
         let jobs = {
             let mut jobs = self.jobs.lock().unwrap_or_else(PoisonError::into_inner);
             if jobs.is_none() {
-                *jobs = start(disk);
+                let pause = Duration::from_millis(self.pause.load(Ordering::Relaxed));
+                *jobs = start(disk, pause);
             }
             jobs.clone()
         };
@@ -73,31 +88,55 @@ impl Writer {
 }
 
 /// The writing thread; `None` if the system gives no more threads.
-fn start(disk: &Arc<Disk>) -> Option<SyncSender<Job>> {
+fn start(disk: &Arc<Disk>, pause: Duration) -> Option<SyncSender<Job>> {
     let (sender, receiver) = mpsc::sync_channel(MOST_WAITING);
     let disk = Arc::clone(disk);
     let thread = std::thread::Builder::new().name("tessgraph cache".to_owned());
-    thread.spawn(move || work_through(&disk, &receiver)).ok()?;
+    thread
+        .spawn(move || work_through(&disk, &receiver, pause))
+        .ok()?;
     Some(sender)
 }
 
-fn work_through(disk: &Arc<Disk>, jobs: &Receiver<Job>) {
+fn work_through(disk: &Arc<Disk>, jobs: &Receiver<Job>, pause: Duration) {
     step_back();
-    for job in jobs {
-        match job {
-            Job::Store(work) => {
-                store(disk, &work);
-                // Long watching and large studies would fill the disk.
-                if let Some(budget) = disk.due_budget() {
-                    CacheFolder::of(disk).gc(budget);
-                }
+    while let Ok(first) = jobs.recv() {
+        let awaited = gather(first, jobs, pause, |work| {
+            store(disk, &work);
+            // Long watching and large studies would fill the disk.
+            if let Some(budget) = disk.due_budget() {
+                CacheFolder::of(disk).gc(budget);
             }
-            Job::Flush(done) => {
-                // Nobody may be waiting any more.
-                let _ = done.send(());
-            }
+        });
+        if let Some(done) = awaited {
+            // Nobody may be waiting any more.
+            let _ = done.send(());
         }
     }
+}
+
+/// Waits for a pause of others' work, unless somebody waits for this or too much
+/// does, and passes on what has come until then; who waits for it, if anybody.
+fn gather(
+    first: Job,
+    jobs: &Receiver<Job>,
+    pause: Duration,
+    store: impl FnMut(ToStore),
+) -> Option<SyncSender<()>> {
+    let (mut waiting, mut awaited) = (Vec::new(), None);
+    let until = Instant::now() + pause;
+    let mut next = Some(first);
+    while let Some(job) = next {
+        match job {
+            Job::Store(work) => waiting.push(work),
+            Job::Flush(done) => awaited = Some(done),
+        }
+        let left = until.saturating_duration_since(Instant::now());
+        let is_ripe = awaited.is_some() || waiting.len() >= MOST_PAUSING || left.is_zero();
+        next = (!is_ripe).then(|| jobs.recv_timeout(left).ok()).flatten();
+    }
+    waiting.into_iter().for_each(store);
+    awaited
 }
 
 /// Lets threads that somebody waits for go first, where all processors are taken.
@@ -158,5 +197,51 @@ pub(super) fn topology_of(value: &Value) -> Option<&Arc<Topology>> {
         Value::Mesh(mesh) => Some(mesh.topology()),
         Value::Directions(directions) => Some(directions.topology()),
         _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn work(number: u8) -> Job {
+        let entry = Entry {
+            results: Vec::new(),
+            files: Vec::new(),
+            warnings: Vec::new(),
+            ms: 0.0,
+            bytes: 0,
+        };
+        Job::Store(ToStore {
+            key: Digest::of(&[number]),
+            entry: Arc::new(entry),
+            values: Arc::new([]),
+        })
+    }
+
+    /// How many results are stored, whether somebody waits for it, and after which time.
+    fn gathered(jobs: Vec<Job>, pause: Duration) -> (usize, bool, Duration) {
+        let (sender, receiver) = mpsc::sync_channel(MOST_WAITING);
+        let mut jobs = jobs.into_iter();
+        let first = jobs.next().unwrap();
+        jobs.for_each(|job| sender.send(job).unwrap());
+        let (start, mut count) = (Instant::now(), 0);
+        let awaited = gather(first, &receiver, pause, |_| count += 1);
+        (count, awaited.is_some(), start.elapsed())
+    }
+
+    #[test]
+    fn results_wait_for_a_pause_but_nobody_for_results() {
+        let (long, short) = (Duration::from_secs(600), Duration::from_millis(30));
+        let flush = || Job::Flush(mpsc::sync_channel(1).0);
+        let (count, awaited, time) = gathered(vec![work(0), work(1)], short);
+        assert_eq!((count, awaited), (2, false));
+        assert!(time >= short);
+        let (count, awaited, time) = gathered(vec![work(0), work(1), flush(), work(2)], long);
+        assert_eq!((count, awaited), (2, true));
+        assert!(time < long);
+        let many = (0..20).map(work).collect();
+        assert_eq!(gathered(many, long).0, MOST_PAUSING);
+        assert_eq!(gathered(vec![work(0), work(1)], Duration::ZERO).0, 1);
     }
 }
