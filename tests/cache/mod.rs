@@ -16,7 +16,7 @@ use tessgraph_geometry::digest::Digest;
 use tessgraph_graph::eval::CacheStats;
 use tessgraph_graph::plan::ResultRef;
 use tessgraph_graph::world::MemoryWorld;
-use tessgraph_graph::{Engine, Evaluation, Observer, Outcome, Plan, Silent};
+use tessgraph_graph::{Engine, Evaluation, Observer, Outcome, Plan, Silent, Value};
 
 use crate::support;
 
@@ -131,6 +131,41 @@ fn a_second_process_computes_nothing_and_loads_only_outputs() {
     let bytes = |run: &Run| run.evaluation.nodes.iter().map(|node| node.bytes).sum();
     let (warm_bytes, cold_bytes): (usize, usize) = (bytes(&warm), bytes(&cold));
     assert_eq!(warm_bytes, cold_bytes);
+}
+
+/// Remembers what was found.
+#[derive(Default)]
+struct Finds(Mutex<Vec<(ResultRef, Digest)>>);
+
+impl Observer for Finds {
+    fn found(&self, result: ResultRef, value: &Value) {
+        let find = (result, value.digest());
+        self.0.lock().expect("no panic").push(find);
+    }
+}
+
+#[test]
+fn every_result_that_was_asked_for_is_told_once_as_it_is_found() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let plan = support::load("edit.ron", GRAPH);
+    let wanted: Vec<_> = plan.outputs.iter().map(|output| output.result).collect();
+    // Computed, known in memory, and read from the folder.
+    let engine = Engine::with_disk(MEMORY, folder.path());
+    let later = Engine::with_disk(MEMORY, folder.path());
+    for engine in [&engine, &engine, &later] {
+        let observer = Finds::default();
+        let evaluation = engine.evaluate(&plan, &wanted, &world(), &observer);
+        engine.flush();
+        let mut found = observer.0.into_inner().expect("no panic");
+        found.sort();
+        let mut expected: Vec<_> = wanted
+            .iter()
+            .filter_map(|&result| Some((result, evaluation.digest(result)?)))
+            .collect();
+        expected.sort();
+        assert_eq!(expected.len(), 3);
+        assert_eq!(found, expected);
+    }
 }
 
 /// Needs nothing, and remembers what it was asked.

@@ -205,6 +205,55 @@ fn any_result_can_be_shown() {
 }
 
 #[test]
+fn positions_are_told_before_the_picture_that_names_them() {
+    let grid = |size: f64| {
+        format!(
+            "Graph(version: 1, nodes: {{\"grid\": Grid(size: [{size:?}, 1], cells: [2, 2])}}, \
+             outputs: {{\"g.obj\": \"grid\"}})"
+        )
+    };
+    let folder = folder_with(&grid(1.0));
+    let server = Server::start(folder.path(), "g.ron", &["--port", "0"]);
+    let mut page = server.open();
+    let first = page.any("shown");
+    write(&folder.path().join("g.ron"), &grid(2.0));
+    let coming = page.any("coming");
+    let shown = page.any("shown");
+    assert_eq!(coming["positions"], shown["mesh"]["positions"]);
+    assert_ne!(first["mesh"]["positions"], shown["mesh"]["positions"]);
+    // Who comes later is told of the picture itself.
+    let mut later = server.open();
+    loop {
+        let told = later.next().expect("a message");
+        assert_ne!(told["type"], "coming");
+        if told["type"] == "shown" {
+            break;
+        }
+    }
+}
+
+#[test]
+fn a_face_that_comes_to_be_cut_otherwise_is_shown_so() {
+    let graph = "Graph(version: 1, nodes: {\"face\": ReadMesh(path: \"face.obj\")}, \
+                 outputs: {\"g.obj\": \"face\"})";
+    let face = |second: &str| format!("v 0 0 0\nv {second} 0\nv 2 2 0\nv 0 2 0\nf 1 2 3 4\n");
+    let folder = folder_with(graph);
+    let path = folder.path().join("face.obj");
+    write(&path, &face("2 0"));
+    let server = Server::start(folder.path(), "g.ron", &["--port", "0"]);
+    let mut page = server.open();
+    let triangles = |shown: &Value| words(&server.buffer(&shown["mesh"]["triangles_buffer"]));
+    let fan = [0, 1, 2, 0, 2, 3];
+    assert_eq!(triangles(&page.any("shown")), fan);
+    // The second corner sinks into the square: the first one does not see all any more.
+    write(&path, &face("0.6 1.2"));
+    let dart = page.until("shown", |shown| triangles(shown) != fan);
+    assert_eq!(triangles(&dart), [1, 2, 3, 0, 1, 3]);
+    write(&path, &face("1.9 0"));
+    assert_eq!(triangles(&page.any("shown")), fan);
+}
+
+#[test]
 fn nothing_to_draw_is_said() {
     let text = GRAPH.replace(
         "\"flat\":",

@@ -127,6 +127,9 @@ export class App {
     }
     window.addEventListener("hashchange", () => this.followLink());
     store.on("hello", ({ file, folder, session }) => this.greet(`${folder}/${file}`, session));
+    store.on("coming", ({ positions }) => {
+      if (!this.preview?.keeps()) this.stage.viewer?.expect(positions);
+    });
     store.on("shown", (shown) => void this.showPicture(shown));
     this.study.onStudy = () => this.drawer.setCount("study", "•", false);
     this.messages.onCount = (errors, warnings) => {

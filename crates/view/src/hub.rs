@@ -12,7 +12,10 @@ use tokio::sync::watch;
 use crate::protocol::{Notice, ToPage};
 
 /// The types that are kept, in the order in which a new page is told them.
-const SLOTS: usize = 8;
+const SLOTS: usize = 9;
+
+/// Where what is to come is kept: a page that comes later has no use for it.
+const COMING: usize = 8;
 
 /// Notices that a page which is a little behind still gets.
 const MOST_NOTICES: usize = 32;
@@ -51,6 +54,7 @@ fn slot(message: &ToPage) -> Option<usize> {
         ToPage::Checks { .. } => 5,
         ToPage::Shown(_) => 6,
         ToPage::Study(_) => 7,
+        ToPage::Coming(_) => COMING,
         ToPage::Picked(_)
         | ToPage::Measured(_)
         | ToPage::Sectioned(_)
@@ -125,7 +129,8 @@ impl Hub {
     /// Everything a new page has to be told, and how many messages there were.
     pub(crate) fn first(&self) -> (Vec<Utf8Bytes>, u64) {
         let state = self.state();
-        let latest = state.latest.iter().flatten().map(|kept| &kept.text);
+        let latest = state.latest[..COMING].iter().flatten();
+        let latest = latest.map(|kept| &kept.text);
         let texts = latest.chain(&state.greeting).cloned();
         (texts.collect(), state.count)
     }

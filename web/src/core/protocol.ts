@@ -114,6 +114,8 @@ export type Diagnostic = {
 export type Diagnostics = { type: "diagnostics"; items: Diagnostic[] };
 
 export type Cell = number | string | boolean | null;
+/** What the next picture will need: the positions that its `shown` will name. */
+export type Coming = { type: "coming"; positions: Digest };
 export type Named = { name: string; value: Cell; unit: string };
 export type Check = {
   node: string;
@@ -261,6 +263,7 @@ export type FromServer =
   | Outcomes
   | Diagnostics
   | Checks
+  | Coming
   | Shown
   | Picked
   | Measured

@@ -32,6 +32,8 @@ export function fromServer(address: URL): BufferSource {
 
 export class Buffers {
   private held = new Map<string, Held>();
+  /** A buffer on its way that nothing has named yet. */
+  private early: { digest: Digest; content: Promise<ArrayBuffer> } | undefined;
   private gl: WebGL2RenderingContext;
 
   constructor(
@@ -48,6 +50,22 @@ export class Buffers {
     return sum;
   }
 
+  /** Begins to fetch what will be named soon, unless it is here. */
+  expect(digest: Digest, format: Format): void {
+    if (this.early?.digest === digest || this.held.has(key(digest, format))) return;
+    const content = this.read(digest);
+    // Whoever loads it is told why it cannot be had.
+    content.catch(() => {});
+    this.early = { digest, content };
+  }
+
+  private fetch(digest: Digest): Promise<ArrayBuffer> {
+    const { early } = this;
+    if (early?.digest !== digest) return this.read(digest);
+    this.early = undefined;
+    return early.content;
+  }
+
   /**
    * Makes the named buffers ready. `inspect` sees the bytes of those fetched now,
    * which are let go afterwards. Throws with a sentence when one cannot be had.
@@ -58,7 +76,7 @@ export class Buffers {
   ): Promise<LoadTimes> {
     const missing = wanted.filter(({ digest, format }) => !this.held.has(key(digest, format)));
     const start = performance.now();
-    const fetched = await Promise.all(missing.map(({ digest }) => this.read(digest)));
+    const fetched = await Promise.all(missing.map(({ digest }) => this.fetch(digest)));
     const between = performance.now();
     let bytes = 0;
     missing.forEach(({ digest, format }, index) => {

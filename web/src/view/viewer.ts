@@ -129,6 +129,11 @@ export class Viewer {
     return this.buffers.bytes;
   }
 
+  /** Begins to fetch the positions of a result that will be shown soon. */
+  expect(positions: string): void {
+    this.buffers.expect(positions, "vec3");
+  }
+
   /**
    * Shows a result, coloured by one of its fields. The old picture stays until all
    * buffers are here; a newer call overtakes an older one, and then `false` comes

@@ -229,6 +229,10 @@ pub trait Observer: Sync {
     /// A node has done `done` of `total` units of its work.
     fn progress(&self, _node: usize, _done: u64, _total: u64) {}
 
+    /// A result that was asked for is there, while others may still be computed. Not
+    /// called for values that are lost and computed again.
+    fn found(&self, _result: ResultRef, _value: &Value) {}
+
     /// A node is dealt with.
     fn finished(&self, _node: usize, _run: &NodeRun) {}
 

@@ -23,7 +23,7 @@ pub use picture::{
     ShownField, ShownMesh, ShownTable,
 };
 pub use sharing::{Lan, Pairing, Shares, Sharing};
-pub use to_page::{Hello, Level, Notice, Study, ToPage};
+pub use to_page::{Coming, Hello, Level, Notice, Study, ToPage};
 
 /// The name of a buffer: 32 hexadecimal digits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

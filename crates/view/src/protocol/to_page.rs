@@ -32,6 +32,9 @@ pub enum ToPage {
         /// In the order they are evaluated.
         items: Vec<Check>,
     },
+    /// What the next picture will need, told as soon as it is known: before the run
+    /// has ended.
+    Coming(Coming),
     /// What the 3D view shows.
     Shown(Box<Shown>),
     /// The answer to [`FromPage::Pick`](super::FromPage::Pick).
@@ -77,6 +80,14 @@ pub struct Hello {
     pub session: String,
     /// Whether the page may change nothing.
     pub read_only: bool,
+}
+
+/// What the next picture will need.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Coming {
+    /// Where its vertices are, as [`ShownMesh::positions`](super::ShownMesh) will
+    /// name it.
+    pub positions: BufferName,
 }
 
 /// How much a notice matters.

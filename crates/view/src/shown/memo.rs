@@ -25,17 +25,27 @@ impl<T: Copy> Memo<T> {
     /// The fact about `content`; `find` says it if it is not known. Not under the
     /// lock: finding out may use the thread pool.
     pub(super) fn get(&self, content: Digest, find: impl FnOnce() -> Option<T>) -> Option<T> {
-        let known = self.known().get(&content).copied();
+        let known = self.look(content);
         if known.is_some() {
             return known;
         }
         let found = find()?;
+        self.put(content, found);
+        Some(found)
+    }
+
+    /// The fact about `content`, if it is known.
+    pub(super) fn look(&self, content: Digest) -> Option<T> {
+        self.known().get(&content).copied()
+    }
+
+    /// Remembers another fact about `content`.
+    pub(super) fn put(&self, content: Digest, fact: T) {
         let mut known = self.known();
         if known.len() >= MOST {
             known.clear();
         }
-        known.insert(content, found);
-        Some(found)
+        known.insert(content, fact);
     }
 
     fn known(&self) -> MutexGuard<'_, BTreeMap<Digest, T>> {

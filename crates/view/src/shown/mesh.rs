@@ -16,8 +16,8 @@ use tessgraph_graph::Units;
 use crate::buffers::{Buffers, bytes, source};
 use crate::protocol::{BufferName, ShownDirections, ShownMesh};
 
-/// A mesh as buffers.
-pub(super) fn mesh(buffers: &Buffers, mesh: &Arc<Mesh>, units: Units) -> ShownMesh {
+/// A mesh as buffers; `is_fans` says whether all its faces are cut into fans.
+pub(super) fn mesh(buffers: &Buffers, mesh: &Arc<Mesh>, units: Units, is_fans: bool) -> ShownMesh {
     let (low, high) = mesh.bounds().unwrap_or_default();
     let origin = origin(low, high);
     let mut named = BTreeMap::new();
@@ -26,9 +26,7 @@ pub(super) fn mesh(buffers: &Buffers, mesh: &Arc<Mesh>, units: Units) -> ShownMe
         name
     };
     let positions = name(positions(buffers, mesh, origin));
-    // Whoever draws the mesh asks for them.
-    buffers.prepare(positions);
-    let cut = Cut::new(mesh);
+    let cut = Cut::new(mesh, is_fans);
     let triangles_buffer = name(buffers.made(cut.source("vertices"), || cut.vertices()));
     let triangle_faces = name(buffers.made(cut.source("faces"), || cut.faces()));
     let edges = name(buffers.made(cut.source("edges"), || cut.edges()));
@@ -47,6 +45,14 @@ pub(super) fn mesh(buffers: &Buffers, mesh: &Arc<Mesh>, units: Units) -> ShownMe
         base_faces,
         buffers: named,
     }
+}
+
+/// The positions of a mesh, which the thread pool begins to make: whoever draws the
+/// mesh asks for them first.
+pub(super) fn begin(buffers: &Buffers, mesh: &Mesh) -> BufferName {
+    let (name, _) = positions(buffers, mesh, origin_of(mesh));
+    buffers.prepare(name);
+    name
 }
 
 /// Directions as a buffer.
@@ -86,7 +92,7 @@ fn origin(low: DVec3, high: DVec3) -> DVec3 {
     }
 }
 
-fn positions(buffers: &Buffers, mesh: &Arc<Mesh>, origin: DVec3) -> (BufferName, usize) {
+fn positions(buffers: &Buffers, mesh: &Mesh, origin: DVec3) -> (BufferName, usize) {
     let digest = mesh.positions().digest();
     let mut hasher: Hasher = source("positions", &[digest]);
     for part in origin.to_array() {
@@ -122,11 +128,11 @@ struct Cut<'a> {
 }
 
 impl<'a> Cut<'a> {
-    fn new(mesh: &'a Mesh) -> Self {
+    fn new(mesh: &'a Mesh, is_fans: bool) -> Self {
         let topology: &Topology = mesh.topology();
         // How a polygon is cut depends on where its corners are, but seldom: then
         // buffers of an earlier mesh with the same faces are named again.
-        let source = if mesh.is_cut_into_fans() {
+        let source = if is_fans {
             source("fans", &[topology.digest()])
         } else {
             let positions = mesh.positions().digest();
@@ -201,6 +207,10 @@ fn base_faces(buffers: &Buffers, mesh: &Mesh) -> Option<(BufferName, usize)> {
 mod tests {
     use super::*;
 
+    fn told(buffers: &Buffers, shown: &Arc<Mesh>, units: Units) -> ShownMesh {
+        mesh(buffers, shown, units, shown.is_cut_into_fans())
+    }
+
     fn content(buffers: &Buffers, name: BufferName) -> Bytes {
         buffers.get(name.0).unwrap()
     }
@@ -229,7 +239,7 @@ mod tests {
     #[test]
     fn triangles_know_their_faces_and_which_sides_are_real() {
         let buffers = Buffers::new(0);
-        let told = mesh(&buffers, &house(), Units::Mm);
+        let told = told(&buffers, &house(), Units::Mm);
         assert_eq!((told.vertices, told.faces, told.triangles), (5, 2, 3));
         assert_eq!(told.scale.to_bits(), 1000f64.to_bits());
         let triangles = ids(&content(&buffers, told.triangles_buffer));
@@ -246,7 +256,7 @@ mod tests {
     #[test]
     fn positions_far_away_keep_their_digits() {
         let buffers = Buffers::new(0);
-        let told = mesh(&buffers, &house(), Units::M);
+        let told = told(&buffers, &house(), Units::M);
         let positions = content(&buffers, told.positions);
         let words = positions.chunks_exact(4);
         let numbers: Vec<f64> = words
@@ -265,13 +275,13 @@ mod tests {
     fn moving_a_little_keeps_origin_and_triangles() {
         let buffers = Buffers::new(0);
         let house = house();
-        let one = mesh(&buffers, &house, Units::M);
+        let one = told(&buffers, &house, Units::M);
         let moved = house
             .positions()
             .iter()
             .map(|place| *place + DVec3::Z * 0.01);
         let moved = Arc::new(house.with_positions(moved.collect()).unwrap());
-        let other = mesh(&buffers, &moved, Units::M);
+        let other = told(&buffers, &moved, Units::M);
         assert_eq!(DVec3::from(one.origin), DVec3::from(other.origin));
         assert_ne!(one.positions, other.positions);
         assert_eq!(one.triangles_buffer, other.triangles_buffer);
@@ -282,12 +292,12 @@ mod tests {
     fn a_face_that_is_cut_in_another_way_has_other_triangles() {
         let buffers = Buffers::new(0);
         let house = house();
-        let one = mesh(&buffers, &house, Units::M);
+        let one = told(&buffers, &house, Units::M);
         // The second corner of the square sinks into it.
         let mut places = house.positions().to_vec();
         places[1] = places[0] + DVec3::new(0.3, 0.0, 0.6);
         let dented = Arc::new(house.with_positions(places).unwrap());
-        let other = mesh(&buffers, &dented, Units::M);
+        let other = told(&buffers, &dented, Units::M);
         assert_ne!(one.triangles_buffer, other.triangles_buffer);
         let triangles = ids(&content(&buffers, other.triangles_buffer));
         assert_eq!(triangles[..6], [1, 2, 3, 0, 1, 3]);

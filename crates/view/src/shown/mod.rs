@@ -17,7 +17,7 @@ use tessgraph_graph::{Evaluation, Plan, Units, Value};
 
 use crate::buffers::Buffers;
 use crate::document::kind_name;
-use crate::protocol::{BufferName, Shown, ShownField};
+use crate::protocol::{BufferName, Coming, Shown, ShownField};
 use crate::values::entries;
 use fields::{Hanger, Ranges};
 use memo::Memo;
@@ -29,6 +29,8 @@ pub struct Gallery {
     /// The topology's digest of each mesh seen, by the mesh's digest: whether a
     /// field fits is asked of many meshes that need not be loaded for it.
     topologies: Memo<Digest>,
+    /// Whether the last mesh of each topology had all its faces cut into fans.
+    fans: Memo<bool>,
     /// Smallest and largest of the numbers of each digest.
     ranges: Ranges,
     /// What was shown last, with its version.
@@ -42,6 +44,8 @@ pub struct Picture {
     pub shown: Shown,
     /// What it is told of, exactly.
     pub subject: Option<Subject>,
+    /// Whether it takes for granted how faces are cut, see [`Gallery::holds`].
+    pub is_guess: bool,
 }
 
 /// A mesh that is shown, and the fields on it.
@@ -153,13 +157,29 @@ impl Gallery {
         Self {
             buffers,
             topologies: Memo::default(),
+            fans: Memo::default(),
             ranges: Ranges::default(),
             last: Mutex::default(),
         }
     }
 
+    /// What a picture of `value` will need, which is begun; `None` where pages have
+    /// it already, or need nothing large.
+    ///
+    /// Cost: O(vertices) for the box of a mesh.
+    pub fn foresee(&self, value: &Value) -> Option<Coming> {
+        let Value::Mesh(mesh) = value else {
+            return None;
+        };
+        let positions = mesh::begin(&self.buffers, mesh);
+        let last = self.last.lock().unwrap_or_else(PoisonError::into_inner);
+        let had = last.mesh.as_ref().map(|mesh| mesh.positions);
+        (had != Some(positions)).then_some(Coming { positions })
+    }
+
     /// A picture of `result`; `None` if it could not be computed. [`wanted`] says
-    /// what the evaluation must have been asked for.
+    /// what the evaluation must have been asked for. It may be a guess: then
+    /// [`Gallery::holds`] says whether it is true.
     ///
     /// Cost: O(size of the mesh) for what is new about it; buffers that were made
     /// before are named again.
@@ -187,11 +207,46 @@ impl Gallery {
             value => shown.report = self::single(exhibit.spec(), value, plan.units),
         }
         let mesh = self.mesh_of(&exhibit, value);
-        let subject = mesh.map(|mesh| self.hang(&exhibit, value, mesh, &mut shown));
+        let fans = mesh.as_ref().map(|mesh| self.fans(mesh));
+        let fans = fans.unwrap_or_default();
+        let subject = mesh.map(|mesh| self.hang(&exhibit, value, (mesh, fans.all), &mut shown));
         if subject.is_none() && shown.report.is_none() && shown.table.is_none() {
             shown.empty = Some(format!("`{}` gives nothing that can be drawn", shown.node));
         }
-        Some(Picture { shown, subject })
+        Some(Picture {
+            shown,
+            subject,
+            is_guess: fans.is_guess,
+        })
+    }
+
+    /// How the faces of a mesh are cut. While corners move that seldom changes: it is
+    /// looked at, which takes as long as all the rest, when the picture was told.
+    fn fans(&self, mesh: &Mesh) -> Fans {
+        let topology = mesh.topology().digest();
+        if self.fans.look(topology) == Some(true) {
+            return Fans {
+                all: true,
+                is_guess: true,
+            };
+        }
+        let all = mesh.is_cut_into_fans();
+        self.fans.put(topology, all);
+        Fans {
+            all,
+            is_guess: false,
+        }
+    }
+
+    /// Whether a picture that was a guess is true. If not, another one of the same
+    /// mesh will be none: a face is cut otherwise, now that its corners have moved.
+    ///
+    /// Cost: O(corners).
+    pub fn holds(&self, subject: &Subject) -> bool {
+        let mesh = &subject.mesh;
+        let is_fans = mesh.is_cut_into_fans();
+        self.fans.put(mesh.topology().digest(), is_fans);
+        is_fans
     }
 
     /// Puts the mesh and what fits it into the picture.
@@ -199,14 +254,16 @@ impl Gallery {
         &self,
         exhibit: &Exhibit<'_>,
         value: &Value,
-        mesh: Arc<Mesh>,
+        (mesh, is_fans): (Arc<Mesh>, bool),
         shown: &mut Shown,
     ) -> Subject {
         let units = exhibit.plan.units;
         if mesh.face_count() == 0 {
             shown.empty = Some(empty(exhibit, &mesh));
         }
-        shown.mesh = Some(mesh::mesh(&self.buffers, &mesh, units));
+        // Not all results are foreseen.
+        mesh::begin(&self.buffers, &mesh);
+        shown.mesh = Some(mesh::mesh(&self.buffers, &mesh, units, is_fans));
         let found = self.laid_over(exhibit, &mesh);
         let directions = match value {
             Value::Directions(directions) => Some(directions),
@@ -354,6 +411,13 @@ impl Gallery {
         self.buffers.sent(&names(shown));
         is_new
     }
+}
+
+/// Whether all faces of a mesh are cut into fans.
+#[derive(Debug, Clone, Copy, Default)]
+struct Fans {
+    all: bool,
+    is_guess: bool,
 }
 
 /// What lies on a mesh.

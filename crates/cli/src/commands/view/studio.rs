@@ -8,10 +8,10 @@ use std::time::{Duration, Instant};
 use tessgraph_geometry::digest::Digest;
 use tessgraph_graph::node::NodeSpec;
 use tessgraph_graph::plan::ResultRef;
-use tessgraph_graph::{Diagnostic, Engine, Evaluation, NodeRun, Observer, Plan};
+use tessgraph_graph::{Diagnostic, Engine, Evaluation, NodeRun, Observer, Plan, Value};
 use tessgraph_view::Hub;
-use tessgraph_view::outcomes::{checks, outcomes};
-use tessgraph_view::protocol::{Check, NodeOutcome, State, Status, ToPage};
+use tessgraph_view::outcomes::outcomes;
+use tessgraph_view::protocol::{NodeOutcome, State, Status, ToPage};
 use tessgraph_view::shown::{Gallery, Picture, default_result, wanted};
 
 use super::ViewArgs;
@@ -64,8 +64,6 @@ pub(super) struct Viewed {
 pub(super) struct Done {
     pub(super) plan: Arc<Plan>,
     pub(super) evaluation: Arc<Evaluation>,
-    pub(super) outcomes: Vec<NodeOutcome>,
-    pub(super) checks: Vec<Check>,
     /// The result that was to be shown.
     pub(super) shown: Option<ResultRef>,
     pub(super) picture: Option<Picture>,
@@ -114,6 +112,21 @@ impl<'a> Studio<'a> {
     /// Returns when all results are kept that are to be.
     pub(super) fn close(&self) {
         self.engine.flush();
+    }
+
+    /// What became of each node, and why. Reads and writes a small file.
+    pub(super) fn outcomes(&self, plan: &Plan, evaluation: &Evaluation) -> Vec<NodeOutcome> {
+        // Under a name of its own: `run` compares with what `run` did.
+        let identity = format!("view {}", self.args.graph.display());
+        outcomes(
+            evaluation,
+            &self.engine.explain(&identity, plan, evaluation),
+        )
+    }
+
+    /// Carries `work` out on the threads that compute, now.
+    pub(super) fn compute_now<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
+        self.pool.install(work)
     }
 
     /// Carries `work` out on the threads that compute, some time.
@@ -188,23 +201,9 @@ impl<'a> Studio<'a> {
         };
         let evaluation = self.engine.evaluate(&plan, &wanted, &file.world, &observer);
         let is_stopped = evaluation.cancelled || interrupt::is_requested();
-        let picture = || {
-            let shown = shown.filter(|_| !is_stopped)?;
-            order.gallery.picture(&plan, &evaluation, shown)
-        };
-        let changes = || {
-            if is_stopped {
-                return Vec::new();
-            }
-            // Under a name of its own: `run` compares with what `run` did.
-            let identity = format!("view {}", self.args.graph.display());
-            self.engine.explain(&identity, &plan, &evaluation)
-        };
-        // One has to wait for the disk.
-        let (picture, changes) = rayon::join(picture, changes);
+        let shown_now = shown.filter(|_| !is_stopped);
+        let picture = shown_now.and_then(|shown| order.gallery.picture(&plan, &evaluation, shown));
         Done {
-            outcomes: outcomes(&evaluation, &changes),
-            checks: checks(&plan, &evaluation),
             evaluation: Arc::new(evaluation),
             plan,
             shown,
@@ -254,6 +253,14 @@ impl Observer for Watching<'_> {
     /// still be loaded.
     fn needs(&self, result: ResultRef, _: Digest, _: Digest) -> bool {
         self.shown == Some(result)
+    }
+
+    fn found(&self, result: ResultRef, value: &Value) {
+        if self.shown == Some(result)
+            && let Some(coming) = self.order.gallery.foresee(value)
+        {
+            self.order.hub.publish(&ToPage::Coming(coming));
+        }
     }
 
     fn started(&self, node: usize) {

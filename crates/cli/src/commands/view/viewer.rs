@@ -6,14 +6,14 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use tessgraph_geometry::digest::Digest;
 use tessgraph_graph::document::edit::Declarations;
-use tessgraph_graph::plan::ResultRef;
 use tessgraph_graph::world::read_plain;
 use tessgraph_graph::{Evaluation, Plan};
 use tessgraph_view::document::{Values, nodes, outputs, parameters, single};
+use tessgraph_view::outcomes::checks;
 use tessgraph_view::protocol::{
     Document, Hello, Level, Notice, Shown, State, Status, ToPage, Value,
 };
-use tessgraph_view::shown::{Gallery, Picture, Subject};
+use tessgraph_view::shown::{Gallery, Subject};
 use tessgraph_view::{Buffers, Hub, token};
 
 use super::ViewArgs;
@@ -246,26 +246,43 @@ impl<'a> Viewer<'a> {
         let line = first.map(|problem| problem.line);
         let message = first.map(|problem| problem.message.clone());
         self.publish_status(errors, line, missing, status);
-        self.hub.publish(&ToPage::Outcomes {
-            nodes: done.outcomes,
-        });
+        self.publish_picture(&done, message);
+        // Why nodes were computed is looked up on the disk: the picture does not wait.
+        let nodes = self.studio.outcomes(plan, &done.evaluation);
+        self.hub.publish(&ToPage::Outcomes { nodes });
         self.hub.publish(&ToPage::Diagnostics { items: found });
-        self.hub.publish(&ToPage::Checks { items: done.checks });
-        self.publish_picture(plan, done.shown, done.picture, message);
+        let items = checks(plan, &done.evaluation);
+        self.hub.publish(&ToPage::Checks { items });
+        self.correct_picture(&done);
         self.last = Some((done.plan, done.evaluation));
+    }
+
+    /// Tells pages of another picture, if the one they were told of took something
+    /// for granted that is not so.
+    fn correct_picture(&mut self, done: &Done) {
+        let guess = done.picture.as_ref().filter(|picture| picture.is_guess);
+        let Some(subject) = guess.and_then(|picture| picture.subject.as_ref()) else {
+            return;
+        };
+        let gallery = &self.gallery;
+        let corrected = self.studio.compute_now(|| {
+            let holds = gallery.holds(subject);
+            let result = done.shown.filter(|_| !holds)?;
+            gallery.picture(&done.plan, &done.evaluation, result)
+        });
+        if let Some(mut picture) = corrected
+            && self.gallery.told(&mut picture.shown, false)
+        {
+            self.hub.publish(&ToPage::Shown(Box::new(picture.shown)));
+        }
     }
 
     /// Tells pages of a picture; one that could not be made leaves the last one
     /// where it is, unless somebody has asked for it.
-    fn publish_picture(
-        &mut self,
-        plan: &Plan,
-        result: Option<ResultRef>,
-        picture: Option<Picture>,
-        failure: Option<String>,
-    ) {
+    fn publish_picture(&mut self, done: &Done, failure: Option<String>) {
         let insists = std::mem::take(&mut self.insists);
-        let Some(result) = result else {
+        let (plan, picture) = (&done.plan, done.picture.clone());
+        let Some(result) = done.shown else {
             return;
         };
         let node = &plan.nodes[result.node].name;

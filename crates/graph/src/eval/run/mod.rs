@@ -209,6 +209,9 @@ impl<'a> Run<'a> {
         let kept = state.open_users.load(Ordering::Acquire) > 0 || self.is_wanted(node);
         if let Some(values) = values.filter(|_| kept) {
             *lock(&state.values) = values.iter().cloned().map(Some).collect();
+            for result in self.wanted_of(node) {
+                self.observer.found(result, &values[result.result]);
+            }
         }
         *lock(&state.done) = Some(Arc::new(done));
         self.release_inputs(node);
@@ -224,7 +227,13 @@ impl<'a> Run<'a> {
     }
 
     fn is_wanted(&self, node: usize) -> bool {
-        self.wanted.iter().any(|result| result.node == node)
+        self.wanted_of(node).next().is_some()
+    }
+
+    /// The results of a node that were asked for.
+    fn wanted_of(&self, node: usize) -> impl Iterator<Item = ResultRef> {
+        let wanted = self.wanted.iter().copied();
+        wanted.filter(move |result| result.node == node)
     }
 
     fn is_cancelled(&self) -> bool {

@@ -201,17 +201,20 @@ impl Run<'_> {
     /// Loads those values of a finished node that outputs need.
     pub(super) fn load_wanted<'s>(&'s self, node: usize, scope: &rayon::Scope<'s>) {
         let needed: Vec<ResultRef> = self
-            .wanted
-            .iter()
-            .filter(|result| result.node == node)
-            .filter(|&&result| {
+            .wanted_of(node)
+            .filter(|&result| {
                 let (digest, provenance) = (self.digest(result), self.provenance(result));
                 self.observer.needs(result, digest, provenance)
             })
-            .copied()
             .collect();
-        if let Err(Unready::Lost(_)) = self.load(&needed) {
-            self.start_revival(node, None, scope);
+        match self.load(&needed) {
+            Ok(()) => {
+                for &result in &needed {
+                    self.observer.found(result, &self.value(result));
+                }
+            }
+            Err(Unready::Lost(_)) => self.start_revival(node, None, scope),
+            Err(_) => {}
         }
     }
 }
