@@ -23,17 +23,20 @@ export function program(): string {
   return found;
 }
 
-function browserPath(): string {
+export function browserPath(): string {
   const found = [process.env["CHROMIUM"], "/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"].find((path) => path && existsSync(path));
   assert.ok(found, "no browser: install Debian's chromium, or name one in CHROMIUM");
   return found;
 }
 
-/** A headless browser that draws in software, as machines without a graphics card must. */
+/** Has a browser draw in software, as machines without a graphics card must. */
+export const SOFTWARE_DRAWING = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist"];
+
+/** A headless browser that draws in software. */
 export function launch(): Promise<Browser> {
   return chromium.launch({
     executablePath: browserPath(),
-    args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist", "--enable-precise-memory-info"],
+    args: [...SOFTWARE_DRAWING, "--enable-precise-memory-info"],
   });
 }
 
