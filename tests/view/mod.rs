@@ -3,6 +3,7 @@
 mod editing;
 mod following;
 mod latency;
+mod pages;
 mod previewing;
 mod sharing;
 mod showing;

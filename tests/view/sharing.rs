@@ -146,7 +146,8 @@ fn the_page_that_needs_no_server_carries_every_buffer() {
     let mut page = server.open();
     page.until_up_to_date();
     let shown = page.any("shown");
-    let answer = server.get("offline.html");
+    let version = &shown["version"];
+    let answer = server.get(&format!("offline/{version}"));
     assert_eq!(answer.status, 200);
     assert!(
         answer
@@ -161,7 +162,9 @@ fn the_page_that_needs_no_server_carries_every_buffer() {
     assert!(!html.contains(&server.token), "the secret stays here");
     let place = folder.path().canonicalize().expect("a folder");
     assert!(!html.contains(&*place.to_string_lossy()));
-    assert_eq!(server.get("offline").status, 404);
+    for other in ["offline", "offline/", "offline/x", "offline/999"] {
+        assert_eq!(server.get(other).status, 404, "{other}");
+    }
 }
 
 #[test]

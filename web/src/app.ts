@@ -108,7 +108,7 @@ export class App {
       source: this.source.root,
       study: this.study.root,
     };
-    this.share = new ShareDialog(store, { link: () => this.link(), save: () => savePage(address), picture: () => void this.screenshot(), options: this.pictureOptions });
+    this.share = new ShareDialog(store, { link: () => this.link(), save: () => savePage(address, store.get("shown")?.version ?? 0), picture: () => void this.screenshot(), options: this.pictureOptions });
     this.drawer = new Drawer(panels, (tab, size) => this.keepDrawer(tab, size), this.look.view.tab, this.look.view.drawer);
     const middle = element("div", { class: "middle" }, this.stage.root, this.viewbar.root, this.drawer.root);
     const rail = element("aside", { class: "rail" }, this.parameters.root, checks.root);
@@ -184,12 +184,11 @@ export class App {
 
   /** The first hello brings back how this graph was looked at; a later one only a new session. */
   private greet(graph: string, session: string): void {
-    const restarted = this.session !== undefined && this.session !== session;
+    const again = this.session !== undefined;
+    if (again && this.session !== session) this.banner.say("info", "tessgraph was started again; the page went on.");
     this.session = session;
-    if (restarted) {
-      this.banner.say("info", "tessgraph was started again; the page went on.");
-      this.restoreShown = true;
-    }
+    // To the server this is a page that has chosen nothing yet.
+    if (again) this.restoreShown = true;
     if (!this.look.turnTo(graph)) return;
     const selection = this.look.takeLink();
     const { view } = this.look;
@@ -230,7 +229,7 @@ export class App {
     return address.href;
   }
 
-  /** After a reload or a restart the server shows its own choice; ask once for ours. */
+  /** After a reload, or when the connection came back, the server shows its own choice; ask once for ours. */
   private restoreShown = false;
 
   private show(node: string, result?: string): void {

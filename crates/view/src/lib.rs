@@ -20,5 +20,5 @@ pub mod shown;
 mod values;
 
 pub use buffers::Buffers;
-pub use hub::Hub;
+pub use hub::{Hub, PageId};
 pub use server::{Address, Asking, DEFAULT_PORT, Desk, Network, Reply, Server, token};

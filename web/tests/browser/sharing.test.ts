@@ -45,6 +45,33 @@ test("a copied link opens the same view, section and pick", async () => {
   }
 });
 
+test("each page sees the node that was chosen on it, and saves that", async () => {
+  const { page, address } = await bench.open("graphs/facade.ron");
+  const first = await page.counts();
+  await page.page.locator('.graph-picture .node[data-node="surface"]').click();
+  await eventually("the surface is shown", async () => /256 faces/.test(await page.counts()));
+  const other = await LivePage.open(bench.browser, address);
+  try {
+    await other.settled();
+    assert.equal(await other.counts(), first, "a new page begins with the first mesh");
+    assert.match(await page.counts(), /256 faces/);
+    await page.page.keyboard.press("Shift+S");
+    const saving = page.page.waitForEvent("download");
+    await page.page.getByRole("button", { name: "Save one file" }).click();
+    const path = bench.workshop.path("surface.html");
+    await (await saving).saveAs(path);
+    const saved = /id="saved">(.*?)<\/script>/s.exec(readFileSync(path, "utf8"))?.[1] ?? "";
+    const { messages } = JSON.parse(saved) as { messages: { type: string; node?: string }[] };
+    assert.deepEqual(messages.filter(({ type }) => type === "shown").map(({ node }) => node), ["surface"]);
+    // A page whose connection breaks off asks for its node again.
+    await page.page.reload();
+    await eventually("the surface is shown again", async () => /256 faces/.test(await page.counts()));
+    assert.equal(await other.counts(), first);
+  } finally {
+    await other.close();
+  }
+});
+
 test("an offline page shows the model without a server", async () => {
   const { page } = await bench.open("graphs/torus.ron");
   const picture = await page.picture();

@@ -244,7 +244,7 @@ fn app(guard: Guard, room: Room) -> Router {
         .route("/{token}/", get(pages::index))
         .route("/{token}/app.js", get(pages::script))
         .route("/{token}/app.css", get(pages::style))
-        .route("/{token}/offline.html", get(offline::offline))
+        .route("/{token}/offline/{version}", get(offline::offline))
         .route("/{token}/picture/{number}", get(pages::picture))
         .route("/{token}/buffer/{name}", get(pages::buffer))
         .route("/{token}/socket", get(socket::socket))

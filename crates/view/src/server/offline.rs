@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use std::io::Write as _;
 
 use axum::body::Body;
-use axum::extract::State;
+use axum::extract::ws::Utf8Bytes;
+use axum::extract::{Path, State};
 use axum::http::StatusCode;
 use axum::http::header::{CACHE_CONTROL, CONTENT_DISPOSITION, CONTENT_TYPE};
 use axum::response::{IntoResponse, Response};
@@ -23,10 +24,22 @@ use super::{Desk, Room};
 /// Bytes of a page that browsers and mail still take.
 const MOST_BYTES: usize = 100_000_000;
 
-/// Answers with the page, or says in words why there is none.
-pub(super) async fn offline(State(room): State<Room>) -> Response {
+/// Answers with the page of the picture of that version, or says in words why there
+/// is none.
+pub(super) async fn offline(
+    State(room): State<Room>,
+    Path((_, version)): Path<(String, String)>,
+) -> Response {
+    let Some(texts) = version
+        .parse()
+        .ok()
+        .and_then(|version| room.desk.hub.seen_with(version))
+    else {
+        let told = "The picture has just been replaced by another: try again.";
+        return (StatusCode::NOT_FOUND, told).into_response();
+    };
     // Packing a large model takes seconds, and this thread has others to serve.
-    let made = tokio::task::spawn_blocking(move || page(&room.desk, MOST_BYTES)).await;
+    let made = tokio::task::spawn_blocking(move || page(&room.desk, &texts, MOST_BYTES)).await;
     match made {
         Ok(Ok(page)) => {
             let headers = [
@@ -48,8 +61,8 @@ pub(super) async fn offline(State(room): State<Room>) -> Response {
 ///
 /// # Errors
 /// In words, when it would have more than `most` bytes.
-fn page(desk: &Desk, most: usize) -> Result<String, String> {
-    let saved = saved(desk);
+fn page(desk: &Desk, texts: &[Utf8Bytes], most: usize) -> Result<String, String> {
+    let saved = saved(desk, texts);
     let script = in_script(&String::from_utf8_lossy(SCRIPT));
     let hash = STANDARD.encode(Sha256::digest(script.as_bytes()));
     let policy = format!(
@@ -78,9 +91,8 @@ fn page(desk: &Desk, most: usize) -> Result<String, String> {
     Ok(page)
 }
 
-/// The last messages, and the buffers that they name, as the page reads them.
-fn saved(desk: &Desk) -> String {
-    let (texts, _) = desk.hub.first();
+/// Messages, and the buffers that they name, as the page reads them.
+fn saved(desk: &Desk, texts: &[Utf8Bytes]) -> String {
     let mut messages: Vec<Value> = texts
         .iter()
         .filter_map(|text| serde_json::from_str(text.as_str()).ok())
@@ -150,10 +162,12 @@ mod tests {
             session: "s".to_owned(),
             read_only: false,
         }));
-        hub.publish(&ToPage::Shown(Box::new(Shown {
+        let shown = Shown {
             node: name.0.to_string(),
+            version: 7,
             ..Shown::default()
-        })));
+        };
+        hub.show(None, &ToPage::Shown(Box::new(shown)));
         Desk {
             hub: Arc::new(hub),
             buffers: Arc::new(buffers),
@@ -162,9 +176,15 @@ mod tests {
         }
     }
 
+    fn made(most: usize) -> Result<String, String> {
+        let desk = desk();
+        let texts = desk.hub.seen_with(7).unwrap();
+        page(&desk, &texts, most)
+    }
+
     #[test]
     fn the_page_holds_what_was_told_and_nothing_of_it_is_markup() {
-        let page = page(&desk(), MOST_BYTES).unwrap();
+        let page = made(MOST_BYTES).unwrap();
         assert!(!page.contains("/home/somebody"));
         assert_eq!(page.matches("<script").count(), 2);
         assert_eq!(page.matches("</script").count(), 2);
@@ -188,7 +208,7 @@ mod tests {
 
     #[test]
     fn the_policy_names_the_script_that_is_there() {
-        let page = page(&desk(), MOST_BYTES).unwrap();
+        let page = made(MOST_BYTES).unwrap();
         let mark = "<script type=\"module\">";
         let script = &page[page.find(mark).unwrap() + mark.len()..];
         let script = &script[..script.find("</script>").unwrap()];
@@ -199,7 +219,7 @@ mod tests {
 
     #[test]
     fn a_page_that_is_too_large_is_refused_with_its_size() {
-        let told = page(&desk(), 1000).unwrap_err();
+        let told = made(1000).unwrap_err();
         assert!(
             told.contains("would have 1 MB") || told.contains("would have 2 MB"),
             "{told}"

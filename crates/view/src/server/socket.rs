@@ -13,7 +13,7 @@ use tokio::sync::mpsc;
 use super::Room;
 use super::guard::Caller;
 use super::pairings::Visit;
-use crate::hub::{Hub, text};
+use crate::hub::{Hub, PageId, text};
 use crate::protocol::{FromPage, Level, Notice, Shares, Sharing, ToPage};
 
 /// Requests are some hundred bytes.
@@ -27,6 +27,8 @@ const PING: Duration = Duration::from_secs(20);
 
 /// What a page asks for, and the way to answer it alone.
 pub struct Asking {
+    /// Which page asks.
+    pub page: PageId,
     /// What it asks for.
     pub request: FromPage,
     /// The way back.
@@ -79,9 +81,30 @@ async fn attend(mut socket: WebSocket, room: Room, caller: Caller) -> Result<(),
     }
 }
 
+/// A page that is open until this is dropped, whichever way that comes about.
+struct Presence {
+    hub: Arc<Hub>,
+    page: PageId,
+}
+
+impl Presence {
+    fn new(hub: &Arc<Hub>) -> Self {
+        let (hub, page) = (Arc::clone(hub), hub.open());
+        Self { hub, page }
+    }
+}
+
+impl Drop for Presence {
+    fn drop(&mut self) {
+        self.hub.close(self.page);
+    }
+}
+
 /// Until the page goes.
 async fn talk(mut socket: WebSocket, room: Room, caller: Caller) -> Result<(), axum::Error> {
     let hub: Arc<Hub> = Arc::clone(&room.desk.hub);
+    let presence = Presence::new(&hub);
+    let page = presence.page;
     let mut bell = hub.bell();
     bell.mark_unchanged();
     let (texts, mut told) = hub.first();
@@ -96,7 +119,7 @@ async fn talk(mut socket: WebSocket, room: Room, caller: Caller) -> Result<(), a
                 if rung.is_err() {
                     return Ok(());
                 }
-                let (texts, count) = hub.since(told);
+                let (texts, count) = hub.since(page, told);
                 told = count;
                 send(&mut socket, texts).await?;
             }
@@ -106,7 +129,7 @@ async fn talk(mut socket: WebSocket, room: Room, caller: Caller) -> Result<(), a
                 let Some(come) = come else {
                     return Ok(());
                 };
-                if take(come?, &room, caller, &reply).is_break() {
+                if take(come?, &room, (page, caller), &reply).is_break() {
                     return Ok(());
                 }
             }
@@ -143,7 +166,12 @@ async fn send(socket: &mut WebSocket, texts: Vec<Utf8Bytes>) -> Result<(), axum:
 }
 
 /// Passes a request on.
-fn take(message: Message, room: &Room, caller: Caller, reply: &Reply) -> ControlFlow<()> {
+fn take(
+    message: Message,
+    room: &Room,
+    (page, caller): (PageId, Caller),
+    reply: &Reply,
+) -> ControlFlow<()> {
     let text = match message {
         Message::Text(text) => text,
         Message::Close(_) => return ControlFlow::Break(()),
@@ -163,7 +191,11 @@ fn take(message: Message, room: &Room, caller: Caller, reply: &Reply) -> Control
         }
         Ok(request) => {
             let reply = reply.clone();
-            let is_taken = (room.desk.ask)(Asking { request, reply });
+            let is_taken = (room.desk.ask)(Asking {
+                page,
+                request,
+                reply,
+            });
             (!is_taken).then(|| "too many requests at once; one was left out".to_owned())
         }
         Err(error) => Some(format!(

@@ -4,9 +4,10 @@ mod fields;
 mod memo;
 mod mesh;
 mod tables;
+mod told;
 
 use std::collections::BTreeSet;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 
 use tessgraph_geometry::digest::Digest;
 use tessgraph_geometry::{Directions, Field, Mesh, join};
@@ -17,10 +18,12 @@ use tessgraph_graph::{Evaluation, Plan, Units, Value};
 
 use crate::buffers::Buffers;
 use crate::document::kind_name;
-use crate::protocol::{BufferName, Coming, Shown, ShownField};
+use crate::protocol::{Coming, Shown, ShownField};
 use crate::values::entries;
 use fields::{Hanger, Ranges};
 use memo::Memo;
+use told::Told;
+
 pub(crate) use mesh::{all, origin_of, triples};
 
 /// Makes pictures of results.
@@ -33,8 +36,7 @@ pub struct Gallery {
     fans: Memo<bool>,
     /// Smallest and largest of the numbers of each digest.
     ranges: Ranges,
-    /// What was shown last, with its version.
-    last: Mutex<Shown>,
+    told: Mutex<Told>,
 }
 
 /// A picture of a result.
@@ -70,9 +72,9 @@ pub fn default_result(plan: &Plan) -> Option<ResultRef> {
     outputs.find(is_mesh).or(first)
 }
 
-/// What has to be evaluated to show `shown` besides the graph's outputs, and to
+/// What has to be evaluated to show these results besides the graph's outputs, and to
 /// tell what the graph checks: the outputs first, each result once.
-pub fn wanted(plan: &Plan, shown: Option<ResultRef>) -> Vec<ResultRef> {
+pub fn wanted(plan: &Plan, shown: &[ResultRef]) -> Vec<ResultRef> {
     let mut wanted: Vec<ResultRef> = plan.outputs.iter().map(|output| output.result).collect();
     wanted.extend(shown);
     let needed = plan.needed(wanted.iter().copied());
@@ -94,9 +96,9 @@ pub fn wanted(plan: &Plan, shown: Option<ResultRef>) -> Vec<ResultRef> {
             }
         }
     }
-    if let Some(shown) = shown {
+    for shown in shown {
         wanted.extend(mesh_inputs(plan, shown.node));
-        wanted.extend(crate::preview::wanted(plan, shown));
+        wanted.extend(crate::preview::wanted(plan, *shown));
     }
     let mut seen = BTreeSet::new();
     wanted.retain(|result| seen.insert(*result));
@@ -159,12 +161,12 @@ impl Gallery {
             topologies: Memo::default(),
             fans: Memo::default(),
             ranges: Ranges::default(),
-            last: Mutex::default(),
+            told: Mutex::default(),
         }
     }
 
-    /// What a picture of `value` will need, which is begun; `None` where pages have
-    /// it already, or need nothing large.
+    /// What a picture of `value` will need, which is begun; `None` where that is
+    /// nothing large.
     ///
     /// Cost: O(vertices) for the box of a mesh.
     pub fn foresee(&self, value: &Value) -> Option<Coming> {
@@ -172,9 +174,7 @@ impl Gallery {
             return None;
         };
         let positions = mesh::begin(&self.buffers, mesh);
-        let last = self.last.lock().unwrap_or_else(PoisonError::into_inner);
-        let had = last.mesh.as_ref().map(|mesh| mesh.positions);
-        (had != Some(positions)).then_some(Coming { positions })
+        Some(Coming { positions })
     }
 
     /// A picture of `result`; `None` if it could not be computed. [`wanted`] says
@@ -372,44 +372,9 @@ impl Gallery {
             })
     }
 
-    /// Has the fields made by which somebody coloured the last picture: they will
-    /// be asked for next.
-    fn prepare(&self, fields: &[ShownField]) {
-        let last = self.last.lock().unwrap_or_else(PoisonError::into_inner);
-        for field in fields {
-            let mut before = last.fields.iter();
-            let before = before.find(|before| before.name == field.name);
-            if before.is_some_and(|before| self.buffers.is_made(before.values)) {
-                self.buffers.prepare(field.values);
-            }
-        }
-    }
-
     /// Where pictures lie.
     pub fn buffers(&self) -> &Buffers {
         &self.buffers
-    }
-
-    /// The version of the picture that was told last.
-    pub fn version(&self) -> u64 {
-        let last = self.last.lock().unwrap_or_else(PoisonError::into_inner);
-        last.version
-    }
-
-    /// Gives a picture the version it is told under, and lets go of buffers that
-    /// only older ones name. Says whether it has to be told: it is new, or
-    /// somebody insists.
-    pub fn told(&self, shown: &mut Shown, insists: bool) -> bool {
-        let mut last = self.last.lock().unwrap_or_else(PoisonError::into_inner);
-        shown.version = last.version;
-        let is_new = *shown != *last || insists;
-        if is_new {
-            shown.version += 1;
-            *last = shown.clone();
-        }
-        drop(last);
-        self.buffers.sent(&names(shown));
-        is_new
     }
 }
 
@@ -480,15 +445,4 @@ fn distinct(mut fields: Vec<ShownField>) -> Vec<ShownField> {
         }
     }
     fields
-}
-
-/// All buffers that a message names.
-fn names(shown: &Shown) -> BTreeSet<BufferName> {
-    let mesh = shown.mesh.iter().flat_map(|mesh| mesh.buffers.keys());
-    let directions = shown
-        .directions
-        .iter()
-        .map(|directions| &directions.outward);
-    let fields = shown.fields.iter().map(|field| &field.values);
-    mesh.chain(directions).chain(fields).copied().collect()
 }

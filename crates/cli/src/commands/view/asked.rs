@@ -9,10 +9,11 @@ use tessgraph_io::write_png;
 use tessgraph_render::{DrawOptions, View, draw};
 use tessgraph_view::pick::{measure, pick};
 use tessgraph_view::protocol::{
-    Described, FromPage, Level, Notice, Picked, PlaneAsked, ResultSummary, ToPage, Value,
+    Described, FromPage, Level, MeasureEnd, Notice, Picked, PlaneAsked, ResultSummary, ToPage,
+    Value,
 };
 use tessgraph_view::section::section;
-use tessgraph_view::{Asking, Reply};
+use tessgraph_view::{Asking, PageId, Reply};
 
 use super::edits::Refused;
 use super::viewer::{Viewer, setting};
@@ -23,8 +24,8 @@ impl Viewer<'_> {
     /// Sees to all requests that wait; what they mean for runs.
     pub(super) fn see_to_requests(&mut self) -> Wish {
         let mut wish = Wish::default();
-        while let Some(Asking { request, reply }) = self.requests.clone().take() {
-            let next = self.see_to(request, &reply);
+        while let Some(asking) = self.requests.clone().take() {
+            let next = self.see_to(asking);
             wish.stop |= next.stop;
             // Who stops the run at work wants no other one either.
             let is_end = next.stop && next.again.is_none();
@@ -34,7 +35,13 @@ impl Viewer<'_> {
         wish
     }
 
-    fn see_to(&mut self, request: FromPage, reply: &Reply) -> Wish {
+    fn see_to(&mut self, asking: Asking) -> Wish {
+        let Asking {
+            page,
+            request,
+            reply,
+        } = asking;
+        let reply = &reply;
         match request {
             FromPage::Set { name, value } => self.set(name, &value, reply),
             FromPage::Write { name, value } => self.write(&name, &setting(&value), reply),
@@ -47,7 +54,7 @@ impl Viewer<'_> {
                 let done = self.edits.redo(&self.args.graph);
                 self.edited("the edit", "was not made again", "redo", done)
             }
-            FromPage::Show { node, result } => self.show(node, result, reply),
+            FromPage::Show { node, result } => self.show(page, node, result, reply),
             FromPage::Cancel => {
                 self.cancelled = true;
                 Wish {
@@ -63,50 +70,35 @@ impl Viewer<'_> {
                 request,
                 face,
                 vertex,
-            } => {
-                let nothing = Picked {
-                    request,
-                    ..Picked::default()
-                };
-                let subject = self.subject.as_ref();
-                let picked = subject.map(|subject| pick(subject, request, face, vertex));
-                reply.send(&ToPage::Picked(picked.unwrap_or(nothing)));
-                Wish::default()
-            }
+            } => self.pick(page, request, [face, vertex], reply),
             FromPage::Measure { request, from, to } => {
-                let subject = self.subject.as_ref();
-                match subject.and_then(|subject| measure(subject, request, from, to)) {
-                    Some(measured) => reply.send(&ToPage::Measured(measured)),
-                    None => return refuse(reply, "there is nothing there to measure"),
-                }
-                Wish::default()
+                self.measure(page, request, [from, to], reply)
             }
-            FromPage::Section { request, plane } => self.section(request, plane, reply),
+            FromPage::Section { request, plane } => self.section(page, request, plane, reply),
             FromPage::Render {
                 request,
                 size,
                 towards,
-            } => self.render(request, size, towards, reply),
+            } => self.render(page, request, (size, towards), reply),
             FromPage::Describe { node } => self.describe(node, reply),
             FromPage::Preview {
                 request,
                 name,
                 from,
                 to,
-            } => self.preview(request, &name, [from, to], reply),
+            } => self.preview((page, request), &name, [from, to], reply),
         }
     }
 
-    /// Has another result shown.
-    fn show(&mut self, node: String, result: Option<String>, reply: &Reply) -> Wish {
+    /// Has another result shown to the page that asks.
+    fn show(&mut self, page: PageId, node: String, result: Option<String>, reply: &Reply) -> Wish {
         let plan = self.last.as_ref().map(|(plan, _)| plan);
         if plan.is_some_and(|plan| plan.result_of(&node, result.as_deref()).is_none()) {
             let place = result.map_or_else(|| node.clone(), |result| format!("{node}.{result}"));
             return refuse(reply, &format!("the graph has no result `{place}`"));
         }
         let cause = format!("showing {node}");
-        self.asked = Some((node, result));
-        self.insists = true;
+        self.choose(page, Some((node, result)));
         again(cause, false)
     }
 
@@ -188,9 +180,43 @@ impl Viewer<'_> {
         again(cause, true)
     }
 
-    /// Cuts what is shown.
-    fn section(&self, request: u64, plane: PlaneAsked, reply: &Reply) -> Wish {
-        if let Some(subject) = self.subject.clone() {
+    /// Tells what is known of a face and a vertex of what a page sees.
+    fn pick(
+        &self,
+        page: PageId,
+        request: u64,
+        [face, vertex]: [Option<usize>; 2],
+        reply: &Reply,
+    ) -> Wish {
+        let nothing = Picked {
+            request,
+            ..Picked::default()
+        };
+        let subject = self.subject(page);
+        let picked = subject.map(|subject| pick(subject, request, face, vertex));
+        reply.send(&ToPage::Picked(picked.unwrap_or(nothing)));
+        Wish::default()
+    }
+
+    /// Measures between two places of what a page sees.
+    fn measure(
+        &self,
+        page: PageId,
+        request: u64,
+        [from, to]: [MeasureEnd; 2],
+        reply: &Reply,
+    ) -> Wish {
+        let subject = self.subject(page);
+        match subject.and_then(|subject| measure(subject, request, from, to)) {
+            Some(measured) => reply.send(&ToPage::Measured(measured)),
+            None => return refuse(reply, "there is nothing there to measure"),
+        }
+        Wish::default()
+    }
+
+    /// Cuts what a page sees.
+    fn section(&self, page: PageId, request: u64, plane: PlaneAsked, reply: &Reply) -> Wish {
+        if let Some(subject) = self.subject(page).cloned() {
             let (buffers, reply) = (Arc::clone(&self.buffers), reply.clone());
             self.studio.spawn(move || {
                 if let Some(sectioned) = section(&subject, &buffers, request, plane) {
@@ -201,10 +227,16 @@ impl Viewer<'_> {
         Wish::default()
     }
 
-    /// Draws what is shown, for a browser that cannot.
-    fn render(&self, request: u64, size: [u32; 2], towards: [f64; 3], reply: &Reply) -> Wish {
+    /// Draws what a page sees, for a browser that cannot, in that size from there.
+    fn render(
+        &self,
+        page: PageId,
+        request: u64,
+        (size, towards): ([u32; 2], [f64; 3]),
+        reply: &Reply,
+    ) -> Wish {
         let towards = DVec3::from_array(towards);
-        if let Some(subject) = self.subject.clone()
+        if let Some(subject) = self.subject(page).cloned()
             && towards.is_finite()
         {
             let (buffers, reply) = (Arc::clone(&self.buffers), reply.clone());

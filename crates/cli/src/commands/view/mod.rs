@@ -11,6 +11,7 @@ mod preview;
 mod problems;
 mod requests;
 mod secret;
+mod sights;
 mod studio;
 mod study;
 mod viewer;

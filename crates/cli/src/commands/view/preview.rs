@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use tessgraph_graph::Plan;
-use tessgraph_view::Reply;
 use tessgraph_view::preview::{Following, preview};
 use tessgraph_view::protocol::{Previewed, ToPage, Value};
+use tessgraph_view::{PageId, Reply};
 
 use super::viewer::{Viewer, setting};
 use crate::graph_file::GraphFile;
@@ -15,21 +15,27 @@ use crate::watch::Wish;
 const SAMPLES: u32 = 5;
 
 impl Viewer<'_> {
-    /// Tells how the picture follows the parameter `name` from one value to another.
+    /// Tells a page how its picture follows the parameter `name` from one value to another.
     /// Takes place on the threads that compute, for it looks at every vertex.
-    pub(super) fn preview(&self, request: u64, name: &str, range: [f64; 2], reply: &Reply) -> Wish {
+    pub(super) fn preview(
+        &self,
+        (page, request): (PageId, u64),
+        name: &str,
+        range: [f64; 2],
+        reply: &Reply,
+    ) -> Wish {
         let declared = self.declared.as_ref();
         let is_whole = declared
             .and_then(|declared| declared.parameter(name))
             .is_some_and(|declaration| declaration.kind() == "Integer");
-        let (Some((plan, evaluation)), Some(subject)) = (self.last.clone(), self.subject.clone())
-        else {
+        let subject = self.subject(page).cloned();
+        let (Some((plan, evaluation)), Some(subject)) = (self.last.clone(), subject) else {
             return Wish::default();
         };
         let (graph, allow) = (self.args.graph.clone(), self.args.engine.allow.clone());
         let (registry, settings, name) = (self.studio.registry, self.settings(), name.to_owned());
         let (gallery, reply) = (Arc::clone(&self.gallery), reply.clone());
-        let version = gallery.version();
+        let version = gallery.version(page);
         self.studio.spawn(move || {
             let at = |value: f64| -> Option<Plan> {
                 let mut set = settings.clone();

@@ -1,5 +1,6 @@
 //! A run for the page: what lives as long as the command, and one run.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -9,10 +10,10 @@ use tessgraph_geometry::digest::Digest;
 use tessgraph_graph::node::NodeSpec;
 use tessgraph_graph::plan::ResultRef;
 use tessgraph_graph::{Diagnostic, Engine, Evaluation, NodeRun, Observer, Plan, Value};
-use tessgraph_view::Hub;
 use tessgraph_view::outcomes::outcomes;
 use tessgraph_view::protocol::{NodeOutcome, State, Status, ToPage};
 use tessgraph_view::shown::{Gallery, Picture, default_result, wanted};
+use tessgraph_view::{Hub, PageId};
 
 use super::ViewArgs;
 use crate::commands::run::Control;
@@ -37,12 +38,16 @@ pub(super) struct Studio<'a> {
     memory: u64,
 }
 
+/// The node and the result that somebody wants to see, instead of the graph's first
+/// mesh.
+pub(super) type Asked = Option<(String, Option<String>)>;
+
 /// What a run is asked for.
 pub(super) struct Order {
     /// Values of parameters instead of the file's.
     pub(super) set: Vec<(String, String)>,
-    /// The node and the result to show, instead of the graph's first mesh.
-    pub(super) shown: Option<(String, Option<String>)>,
+    /// What pages look at.
+    pub(super) asked: Vec<(Option<PageId>, Asked)>,
     /// What the run is for.
     pub(super) cause: String,
     pub(super) hub: Arc<Hub>,
@@ -64,9 +69,10 @@ pub(super) struct Viewed {
 pub(super) struct Done {
     pub(super) plan: Arc<Plan>,
     pub(super) evaluation: Arc<Evaluation>,
-    /// The result that was to be shown.
-    pub(super) shown: Option<ResultRef>,
-    pub(super) picture: Option<Picture>,
+    /// The results that were to be shown, by page.
+    pub(super) shown: Vec<(Option<PageId>, ResultRef)>,
+    /// The pictures of those that could be made.
+    pub(super) pictures: BTreeMap<ResultRef, Picture>,
 }
 
 /// What a run reads, as far as the page must know.
@@ -184,32 +190,47 @@ impl<'a> Studio<'a> {
 
     fn compute(&self, file: GraphFile, order: &Order, control: &Control) -> Done {
         let plan = Arc::new(file.plan);
-        let asked = order.shown.as_ref();
-        let asked = asked.and_then(|(node, result)| plan.result_of(node, result.as_deref()));
-        let shown = asked.or_else(|| default_result(&plan));
-        let wanted = wanted(&plan, shown);
+        let shown = shown(&plan, &order.asked);
+        let results: BTreeSet<ResultRef> = shown.iter().map(|(_, result)| *result).collect();
+        let results: Vec<ResultRef> = results.into_iter().collect();
+        let wanted = wanted(&plan, &results);
         let needed = plan.needed(wanted.iter().copied());
         let names = plan.nodes.iter().map(|node| node.name.clone()).collect();
         let observer = Watching {
             inner: &Progress::new(names, &control.stop),
             plan: &plan,
             order,
-            shown,
+            shown: &shown,
             total: needed.iter().filter(|needed| **needed).count(),
             done: AtomicUsize::new(0),
             told: Mutex::new(Instant::now()),
         };
         let evaluation = self.engine.evaluate(&plan, &wanted, &file.world, &observer);
         let is_stopped = evaluation.cancelled || interrupt::is_requested();
-        let shown_now = shown.filter(|_| !is_stopped);
-        let picture = shown_now.and_then(|shown| order.gallery.picture(&plan, &evaluation, shown));
+        let picture = |result: &ResultRef| {
+            let picture = order.gallery.picture(&plan, &evaluation, *result)?;
+            Some((*result, picture))
+        };
+        let pictures = results.iter().filter(|_| !is_stopped);
+        let pictures = pictures.filter_map(picture).collect();
         Done {
             evaluation: Arc::new(evaluation),
             plan,
             shown,
-            picture,
+            pictures,
         }
     }
+}
+
+/// What is to be shown of a plan, by page.
+fn shown(plan: &Plan, asked: &[(Option<PageId>, Asked)]) -> Vec<(Option<PageId>, ResultRef)> {
+    let first = default_result(plan);
+    let results = asked.iter().filter_map(|(page, asked)| {
+        let asked = asked.as_ref();
+        let asked = asked.and_then(|(node, result)| plan.result_of(node, result.as_deref()));
+        Some((*page, asked.or(first)?))
+    });
+    results.collect()
 }
 
 /// Tells the page how far a run is.
@@ -217,7 +238,7 @@ struct Watching<'a> {
     inner: &'a Progress<'a>,
     plan: &'a Plan,
     order: &'a Order,
-    shown: Option<ResultRef>,
+    shown: &'a [(Option<PageId>, ResultRef)],
     total: usize,
     done: AtomicUsize,
     /// When the page was told last.
@@ -225,6 +246,12 @@ struct Watching<'a> {
 }
 
 impl Watching<'_> {
+    /// The pages that look at a result.
+    fn pages_at(&self, result: ResultRef) -> impl Iterator<Item = Option<PageId>> {
+        let shown = self.shown.iter();
+        shown.filter_map(move |(page, shown)| (*shown == result).then_some(*page))
+    }
+
     /// Tells the page, unless it was told just now.
     fn tell(&self, node: usize, fraction: Option<f64>) {
         let now = Instant::now();
@@ -252,14 +279,18 @@ impl Observer for Watching<'_> {
     /// Only what is shown: of the rest mostly the digest is enough, and it can
     /// still be loaded.
     fn needs(&self, result: ResultRef, _: Digest, _: Digest) -> bool {
-        self.shown == Some(result)
+        self.pages_at(result).next().is_some()
     }
 
     fn found(&self, result: ResultRef, value: &Value) {
-        if self.shown == Some(result)
-            && let Some(coming) = self.order.gallery.foresee(value)
+        let Order { gallery, hub, .. } = self.order;
+        let mut pages = self.pages_at(result).peekable();
+        if pages.peek().is_some()
+            && let Some(coming) = gallery.foresee(value)
         {
-            self.order.hub.publish(&ToPage::Coming(coming));
+            for page in pages.filter(|page| gallery.lacks(*page, &coming)) {
+                hub.show(page, &ToPage::Coming(coming.clone()));
+            }
         }
     }
 

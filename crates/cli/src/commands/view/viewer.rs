@@ -10,16 +10,15 @@ use tessgraph_graph::world::read_plain;
 use tessgraph_graph::{Evaluation, Plan};
 use tessgraph_view::document::{Values, nodes, outputs, parameters, single};
 use tessgraph_view::outcomes::checks;
-use tessgraph_view::protocol::{
-    Document, Hello, Level, Notice, Shown, State, Status, ToPage, Value,
-};
-use tessgraph_view::shown::{Gallery, Subject};
-use tessgraph_view::{Buffers, Hub, token};
+use tessgraph_view::protocol::{Document, Hello, Level, Notice, State, Status, ToPage, Value};
+use tessgraph_view::shown::Gallery;
+use tessgraph_view::{Buffers, Hub, PageId, token};
 
 use super::ViewArgs;
 use super::edits::Edits;
 use super::problems::problems;
 use super::requests::Requests;
+use super::sights::Sight;
 use super::studio::{Done, Order, Studio, Viewed};
 use super::study::{self, Studies};
 use crate::commands::run::Control;
@@ -50,17 +49,12 @@ pub(super) struct Viewer<'a> {
     /// Values that somebody is trying out, as `--set` takes them.
     pub(super) live: BTreeMap<String, String>,
     pub(super) edits: Edits,
-    /// The node and result that somebody wants to see.
-    pub(super) asked: Option<(String, Option<String>)>,
-    /// Whether the next picture is told even if it is the same.
-    pub(super) insists: bool,
+    /// What pages see that have chosen something, and with `None` all others.
+    pub(super) sights: BTreeMap<Option<PageId>, Sight>,
     /// Whether the run at work is out of date: the file or a value is another.
     pub(super) outdated: bool,
     /// Whether somebody has stopped the run at work.
     pub(super) cancelled: bool,
-    pub(super) subject: Option<Subject>,
-    /// Whether pages have a picture.
-    has_picture: bool,
     pub(super) last: Option<(Arc<Plan>, Arc<Evaluation>)>,
 }
 
@@ -93,12 +87,9 @@ impl<'a> Viewer<'a> {
             studies: Studies::default(),
             live: BTreeMap::new(),
             edits: Edits::default(),
-            asked: None,
-            insists: false,
+            sights: [(None, Sight::default())].into(),
             outdated: false,
             cancelled: false,
-            subject: None,
-            has_picture: false,
             last: None,
         };
         let graph = &args.graph;
@@ -205,7 +196,7 @@ impl<'a> Viewer<'a> {
     /// Tells all pages something.
     pub(super) fn notice(&self, level: Level, text: impl Into<String>) {
         let text = text.into();
-        self.hub.notice(Notice { level, text });
+        self.hub.notice(None, Notice { level, text });
     }
 
     /// A cause as the page is told it: files from the graph's folder.
@@ -246,70 +237,15 @@ impl<'a> Viewer<'a> {
         let line = first.map(|problem| problem.line);
         let message = first.map(|problem| problem.message.clone());
         self.publish_status(errors, line, missing, status);
-        self.publish_picture(&done, message);
+        self.show_pictures(&done, message.as_deref());
         // Why nodes were computed is looked up on the disk: the picture does not wait.
         let nodes = self.studio.outcomes(plan, &done.evaluation);
         self.hub.publish(&ToPage::Outcomes { nodes });
         self.hub.publish(&ToPage::Diagnostics { items: found });
         let items = checks(plan, &done.evaluation);
         self.hub.publish(&ToPage::Checks { items });
-        self.correct_picture(&done);
+        self.correct_pictures(&done);
         self.last = Some((done.plan, done.evaluation));
-    }
-
-    /// Tells pages of another picture, if the one they were told of took something
-    /// for granted that is not so.
-    fn correct_picture(&mut self, done: &Done) {
-        let guess = done.picture.as_ref().filter(|picture| picture.is_guess);
-        let Some(subject) = guess.and_then(|picture| picture.subject.as_ref()) else {
-            return;
-        };
-        let gallery = &self.gallery;
-        let corrected = self.studio.compute_now(|| {
-            let holds = gallery.holds(subject);
-            let result = done.shown.filter(|_| !holds)?;
-            gallery.picture(&done.plan, &done.evaluation, result)
-        });
-        if let Some(mut picture) = corrected
-            && self.gallery.told(&mut picture.shown, false)
-        {
-            self.hub.publish(&ToPage::Shown(Box::new(picture.shown)));
-        }
-    }
-
-    /// Tells pages of a picture; one that could not be made leaves the last one
-    /// where it is, unless somebody has asked for it.
-    fn publish_picture(&mut self, done: &Done, failure: Option<String>) {
-        let insists = std::mem::take(&mut self.insists);
-        let (plan, picture) = (&done.plan, done.picture.clone());
-        let Some(result) = done.shown else {
-            return;
-        };
-        let node = &plan.nodes[result.node].name;
-        if self.asked.as_ref().is_some_and(|(asked, _)| asked != node) {
-            let (lost, _) = self.asked.take().unwrap_or_default();
-            let text = format!("the graph has no node `{lost}` any more; `{node}` is shown");
-            self.notice(Level::Info, text);
-        }
-        let mut shown = match picture {
-            Some(picture) => {
-                // A report or table leaves the mesh where it is.
-                self.subject = picture.subject.or(self.subject.take());
-                self.has_picture = true;
-                picture.shown
-            }
-            None if !insists && self.has_picture => return,
-            None => Shown {
-                node: node.clone(),
-                result: plan.result_spec(result).name.to_owned(),
-                kind: format!("{:?}", plan.result_spec(result).kind),
-                empty: Some(failure.unwrap_or_else(|| format!("`{node}` could not be computed"))),
-                ..Shown::default()
-            },
-        };
-        if self.gallery.told(&mut shown, insists) {
-            self.hub.publish(&ToPage::Shown(Box::new(shown)));
-        }
     }
 
     /// Tells pages whether what they see is true.
@@ -347,9 +283,15 @@ impl<'a> Work<'a> for Viewer<'a> {
         if !self.live.is_empty() {
             resume::begins_trial();
         }
+        let hub = Arc::clone(&self.hub);
+        self.gallery.retain(|page| hub.is_open(page));
+        self.sights
+            .retain(|page, _| page.is_none_or(|page| hub.is_open(page)));
+        let asked = self.sights.iter();
+        let asked = asked.map(|(page, sight)| (*page, sight.asked.clone()));
         let order = Order {
             set: self.settings(),
-            shown: self.asked.clone(),
+            asked: asked.collect(),
             cause: self.cause(cause),
             hub: Arc::clone(&self.hub),
             gallery: Arc::clone(&self.gallery),
