@@ -1,7 +1,9 @@
 //! Edges and one-rings, in compressed rows.
 
+use bytemuck::Zeroable;
+
 use super::Topology;
-use crate::parallel::in_order;
+use crate::parallel::{in_order, zeroed};
 use crate::{GeometryError, Monitor};
 
 /// Marks a corner whose outgoing edge joins a vertex to itself.
@@ -23,19 +25,19 @@ pub struct Adjacency {
 
 /// Lists of unequal length, one after the other.
 #[derive(Debug, Default)]
-struct Rows {
+struct Rows<T = u32> {
     offsets: Vec<u32>,
-    items: Vec<u32>,
+    items: Vec<T>,
 }
 
-impl Rows {
+impl<T: Copy + Zeroable> Rows<T> {
     /// Sorts items into rows, stable in the order of `places` that `pair` gives
     /// a (row, item) for.
     fn gather(
         count: usize,
         places: usize,
         monitor: &dyn Monitor,
-        pair: impl Fn(usize) -> Option<(u32, u32)>,
+        pair: impl Fn(usize) -> Option<(u32, T)>,
     ) -> Result<Self, GeometryError> {
         let mut offsets = vec![0u32; count + 1];
         in_order(places, monitor, |place| {
@@ -45,7 +47,7 @@ impl Rows {
         })?;
         in_order(count, monitor, |row| offsets[row + 1] += offsets[row])?;
         let mut next = offsets.clone();
-        let mut items = vec![0; offsets[count] as usize];
+        let mut items = zeroed(offsets[count] as usize);
         in_order(places, monitor, |place| {
             if let Some((row, item)) = pair(place) {
                 items[next[row as usize] as usize] = item;
@@ -55,7 +57,7 @@ impl Rows {
         Ok(Self { offsets, items })
     }
 
-    fn row(&self, row: usize) -> &[u32] {
+    fn row(&self, row: usize) -> &[T] {
         &self.items[self.offsets[row] as usize..self.offsets[row + 1] as usize]
     }
 }
@@ -72,17 +74,31 @@ impl Adjacency {
             next.push(face[0]);
         })?;
         let vertices = topology.vertex_count();
-        let (edges, corner_edge) = number_edges(vertices, corners, &next, monitor)?;
-        let edge_corners = Rows::gather(edges.len(), corners.len(), monitor, |corner| {
-            let edge = corner_edge[corner];
-            (edge != NO_EDGE).then_some((edge, corner as u32))
-        })?;
-        let vertex_corners = Rows::gather(vertices, corners.len(), monitor, |corner| {
-            Some((corners[corner], corner as u32))
-        })?;
-        let vertex_edges = Rows::gather(vertices, 2 * edges.len(), monitor, |end| {
-            Some((edges[end / 2][end % 2], (end / 2) as u32))
-        })?;
+        // What does not need each other is made side by side.
+        let (numbered, vertex_corners) = rayon::join(
+            || number_edges(vertices, corners, &next, monitor),
+            || {
+                Rows::gather(vertices, corners.len(), monitor, |corner| {
+                    Some((corners[corner], corner as u32))
+                })
+            },
+        );
+        let (edges, corner_edge) = numbered?;
+        let (edge_corners, vertex_edges) = rayon::join(
+            || {
+                Rows::gather(edges.len(), corners.len(), monitor, |corner| {
+                    let edge = corner_edge[corner];
+                    (edge != NO_EDGE).then_some((edge, corner as u32))
+                })
+            },
+            || {
+                Rows::gather(vertices, 2 * edges.len(), monitor, |end| {
+                    Some((edges[end / 2][end % 2], (end / 2) as u32))
+                })
+            },
+        );
+        let (vertex_corners, edge_corners) = (vertex_corners?, edge_corners?);
+        let vertex_edges = vertex_edges?;
         Ok(Self {
             edges,
             corner_edge,
@@ -180,19 +196,20 @@ fn number_edges(
     to: &[u32],
     monitor: &dyn Monitor,
 ) -> Result<(Vec<[u32; 2]>, Vec<u32>), GeometryError> {
+    // With its upper vertex in front, a corner is sorted as one number.
     let mut buckets = Rows::gather(vertex_count, from.len(), monitor, |corner| {
         let (a, b) = (from[corner], to[corner]);
-        (a != b).then_some((a.min(b), corner as u32))
+        let item = u64::from(a.max(b)) << 32 | corner as u64;
+        (a != b).then_some((a.min(b), item))
     })?;
-    let upper = |corner: u32| from[corner as usize].max(to[corner as usize]);
     let mut first_corner = vec![NO_EDGE; from.len()];
     in_order(vertex_count, monitor, |vertex| {
         let bounds = buckets.offsets[vertex] as usize..buckets.offsets[vertex + 1] as usize;
         let bucket = &mut buckets.items[bounds];
-        bucket.sort_unstable_by_key(|&corner| (upper(corner), corner));
-        for run in bucket.chunk_by(|&a, &b| upper(a) == upper(b)) {
-            for &corner in run {
-                first_corner[corner as usize] = run[0];
+        bucket.sort_unstable();
+        for run in bucket.chunk_by(|&a, &b| a >> 32 == b >> 32) {
+            for &item in run {
+                first_corner[item as u32 as usize] = run[0] as u32;
             }
         }
     })?;
