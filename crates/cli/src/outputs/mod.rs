@@ -97,12 +97,12 @@ impl<'a> Outputs<'a> {
         read: &ReadFiles,
     ) -> Result<Vec<WrittenOutput>, Box<Diagnostic>> {
         let result = target.result;
-        let known = evaluation.digest(result).zip(evaluation.provenance(result));
-        let Some((digest, provenance)) = known else {
+        let known = evaluation.identity(result);
+        let Some((identity, provenance)) = known.zip(evaluation.provenance(result)) else {
             return Ok(Vec::new());
         };
         self.check_inputs(target, &target.path, read)?;
-        let made_from = made_from(self.plan, target, digest, provenance);
+        let made_from = made_from(self.plan, target, identity, provenance);
         if let Some(record) = self.current_record(target, made_from) {
             return Ok(current::found(target, &record));
         }

@@ -106,17 +106,17 @@ pub struct Evaluation {
 /// A result that was asked for.
 #[derive(Debug)]
 pub(super) struct Wanted {
-    digest: Digest,
+    identity: Digest,
     provenance: Digest,
     ms: f64,
     value: OnceLock<Option<Value>>,
 }
 
 impl Wanted {
-    pub(super) fn new(digest: Digest, provenance: Digest, ms: f64, value: Option<Value>) -> Self {
+    pub(super) fn new(identity: Digest, provenance: Digest, ms: f64, value: Option<Value>) -> Self {
         let value = value.map(Some).map_or_else(OnceLock::new, OnceLock::from);
         Self {
-            digest,
+            identity,
             provenance,
             ms,
             value,
@@ -137,13 +137,24 @@ impl Evaluation {
         // Not inside the cell: loading uses the thread pool, and a thread that waits
         // there may take up a task that asks for this value.
         let cache = self.cache.as_ref();
-        let value = cache.and_then(|cache| cache.value(wanted.digest, wanted.ms));
+        let value = cache.and_then(|cache| cache.value(wanted.identity, wanted.ms));
         wanted.value.get_or_init(|| value).as_ref()
     }
 
-    /// Content digest of a result that was asked for, known without its value.
+    /// What tells a result that was asked for from all others, known without its
+    /// value: the digest of its content, or in a run without a cache, where none is
+    /// found again by it, its provenance.
+    pub fn identity(&self, result: ResultRef) -> Option<Digest> {
+        self.wanted.get(&result).map(|wanted| wanted.identity)
+    }
+
+    /// Content digest of a result that was asked for; with a cache it is known
+    /// without the value, else the value is read for it.
     pub fn digest(&self, result: ResultRef) -> Option<Digest> {
-        self.wanted.get(&result).map(|wanted| wanted.digest)
+        match self.cache {
+            Some(_) => self.identity(result),
+            None => self.value(result).map(Value::digest),
+        }
     }
 
     /// Digest of everything a wanted result was made from: kinds and versions
@@ -214,11 +225,11 @@ impl PlanMeasure {
 /// Called from several threads. Nodes are named by index into the plan.
 pub trait Observer: Sync {
     /// Whether the value of a result that was asked for is needed, now that its
-    /// digest and provenance are known (see [`Evaluation::digest`] and
+    /// identity and provenance are known (see [`Evaluation::identity`] and
     /// [`Evaluation::provenance`]). An output whose file is unchanged needs none,
     /// and then none is read from the cache. Not asked about what was computed
     /// anyhow.
-    fn needs(&self, _result: ResultRef, _digest: Digest, _provenance: Digest) -> bool {
+    fn needs(&self, _result: ResultRef, _identity: Digest, _provenance: Digest) -> bool {
         true
     }
 

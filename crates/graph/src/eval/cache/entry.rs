@@ -27,16 +27,28 @@ pub(in crate::eval) struct Entry {
 /// What an entry knows about one result.
 #[derive(Debug, Clone)]
 pub(in crate::eval) struct Known {
-    pub(in crate::eval) digest: Digest,
+    /// Tells it from all other results: by its content, or in a run without a
+    /// cache by how it was made.
+    pub(in crate::eval) identity: Digest,
     /// The value itself if it is small: an expression over a number needs no
     /// further file.
     pub(in crate::eval) small: Option<Value>,
 }
 
 impl Known {
+    /// A result that is known by its content, so that equal ones are found equal.
     pub(in crate::eval) fn new(value: &Value) -> Self {
         Self {
-            digest: value.digest(),
+            identity: value.digest(),
+            small: is_small(value).then(|| value.clone()),
+        }
+    }
+
+    /// A result that is not looked up anywhere: its provenance tells it apart as
+    /// well, and nobody reads all of a large mesh for it.
+    pub(in crate::eval) fn unread(value: &Value, provenance: Digest) -> Self {
+        Self {
+            identity: provenance,
             small: is_small(value).then(|| value.clone()),
         }
     }
@@ -89,7 +101,7 @@ impl Entry {
         out.float(self.ms).number(self.bytes);
         out.number(self.results.len() as u64);
         for known in &self.results {
-            out.digest(known.digest);
+            out.digest(known.identity);
             out.byte(u8::from(known.small.is_some()));
             if let Some(value) = &known.small {
                 value.encode(&mut out);
@@ -132,13 +144,13 @@ impl Entry {
 }
 
 fn decode_known(from: &mut Decoder<'_>) -> Option<Known> {
-    let digest = from.digest()?;
+    let identity = from.digest()?;
     let small = match from.byte()? {
         0 => None,
         1 => Some(Value::decode(from)?),
         _ => return None,
     };
-    Some(Known { digest, small })
+    Some(Known { identity, small })
 }
 
 fn decode_file(from: &mut Decoder<'_>) -> Option<FileUse> {

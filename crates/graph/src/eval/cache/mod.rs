@@ -210,7 +210,7 @@ impl Cache {
                 self.share(topology.digest(), Arc::clone(topology));
             }
             if known.small.is_none() {
-                lock(&self.values).insert(known.digest, value, entry.ms);
+                lock(&self.values).insert(known.identity, value, entry.ms);
             }
         }
         for key in entry.keys(key) {

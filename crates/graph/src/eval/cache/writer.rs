@@ -173,7 +173,7 @@ fn store_value(disk: &Disk, known: &Known, value: &Value, cost: f64) -> bool {
         Some(topology) => disk.has(FileKind::Topology, topology.digest()),
         None => !matches!(value, Value::List(_)),
     };
-    if has_topology && disk.has(FileKind::Value, known.digest) {
+    if has_topology && disk.has(FileKind::Value, known.identity) {
         return true;
     }
     let mut out = Encoder::new();
@@ -188,7 +188,7 @@ fn store_value(disk: &Disk, known: &Known, value: &Value, cost: f64) -> bool {
             disk.write(FileKind::Topology, digest, cost, &bytes);
         }
     }
-    disk.write(FileKind::Value, known.digest, cost, &bytes);
+    disk.write(FileKind::Value, known.identity, cost, &bytes);
     true
 }
 

@@ -7,7 +7,7 @@ use std::time::Instant;
 use tessgraph_geometry::Monitor;
 use tessgraph_geometry::digest::Digest;
 
-use super::prepare::Prepared;
+use super::prepare::{Prepared, of_result};
 use super::state::Done;
 use super::{Run, provenance};
 use crate::NodeError;
@@ -64,7 +64,7 @@ impl Run<'_> {
                     None => computed.into(),
                 };
                 done.run.bytes = Value::List(Arc::clone(&computed)).byte_size();
-                done.results = computed.iter().map(Known::new).collect();
+                done.results = self.known(&computed, done.provenance);
                 let entry = Entry {
                     results: done.results.clone(),
                     files,
@@ -84,6 +84,15 @@ impl Run<'_> {
             thread,
         });
         (done, values, to_store)
+    }
+
+    /// What is known about each result of a node with this provenance.
+    fn known(&self, computed: &Values, provenance: Digest) -> Vec<Known> {
+        let known = |(index, value)| match self.cache {
+            Some(_) => Known::new(value),
+            None => Known::unread(value, of_result(provenance, index)),
+        };
+        computed.iter().enumerate().map(known).collect()
     }
 
     fn fail(&self, done: &mut Done, error: NodeError) {

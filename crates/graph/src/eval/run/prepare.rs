@@ -61,8 +61,8 @@ impl Run<'_> {
         spec: &InputSpec,
         origin: &Origin,
     ) -> Result<(Option<Part>, Option<Value>), Unready> {
-        if let Some(digest) = self.digest_alone(origin) {
-            return Ok((Some(Part::Value(digest)), None));
+        if let Some(identity) = self.identity_alone(origin) {
+            return Ok((Some(Part::Value(identity)), None));
         }
         let value = self.input_value(spec, origin)?;
         let part = match &value {
@@ -72,13 +72,13 @@ impl Run<'_> {
         Ok((part, value))
     }
 
-    /// The digest of a value that is made of whole results, without the value.
-    fn digest_alone(&self, origin: &Origin) -> Option<Digest> {
+    /// What tells a value that is made of whole results from others, without it.
+    fn identity_alone(&self, origin: &Origin) -> Option<Digest> {
         match origin {
-            Origin::Result(result) => Some(self.digest(*result)),
+            Origin::Result(result) => Some(self.identity(*result)),
             Origin::List(items) => {
                 let items: Option<Vec<Digest>> =
-                    items.iter().map(|item| self.digest_alone(item)).collect();
+                    items.iter().map(|item| self.identity_alone(item)).collect();
                 Some(list_digest(items?.into_iter()))
             }
             _ => None,
@@ -137,15 +137,16 @@ impl Run<'_> {
         };
     }
 
-    pub(super) fn digest(&self, result: ResultRef) -> Digest {
-        self.done(result.node).results[result.result].digest
+    pub(super) fn identity(&self, result: ResultRef) -> Digest {
+        self.done(result.node).results[result.result].identity
     }
 
     pub(super) fn provenance(&self, result: ResultRef) -> Digest {
-        let node = self.done(result.node).provenance;
-        Hasher::new()
-            .digest(node)
-            .number(result.result as u64)
-            .finish()
+        of_result(self.done(result.node).provenance, result.result)
     }
+}
+
+/// The provenance of one result of a node.
+pub(super) fn of_result(node: Digest, result: usize) -> Digest {
+    Hasher::new().digest(node).number(result as u64).finish()
 }

@@ -48,7 +48,7 @@ impl Run<'_> {
         let known = &done.results[result.result];
         let held = lock(&self.nodes[result.node].values)[result.result].clone();
         let value = held.or_else(|| known.small.clone());
-        Wanted::new(known.digest, self.provenance(result), done.run.ms, value)
+        Wanted::new(known.identity, self.provenance(result), done.run.ms, value)
     }
 
     /// Tells `cached` from `cut_off`: a value that was lost may have been

@@ -39,9 +39,9 @@ impl Run<'_> {
             if self.find(result).is_some() {
                 continue;
             }
-            let digest = done.results[result.result].digest;
+            let identity = done.results[result.result].identity;
             let cost = self.costs(result.node);
-            match self.cache.and_then(|cache| cache.value(digest, cost)) {
+            match self.cache.and_then(|cache| cache.value(identity, cost)) {
                 Some(value) => {
                     lock(&self.nodes[result.node].values)[result.result] = Some(value);
                 }
@@ -146,7 +146,7 @@ impl Run<'_> {
         let pairs = before.results.iter().zip(&done.results);
         let different: Vec<usize> = pairs
             .enumerate()
-            .filter(|(_, (before, now))| before.digest != now.digest)
+            .filter(|(_, (before, now))| before.identity != now.identity)
             .map(|(index, _)| index)
             .collect();
         if different.is_empty() && before.results.len() == done.results.len() {
@@ -203,8 +203,8 @@ impl Run<'_> {
         let needed: Vec<ResultRef> = self
             .wanted_of(node)
             .filter(|&result| {
-                let (digest, provenance) = (self.digest(result), self.provenance(result));
-                self.observer.needs(result, digest, provenance)
+                let (identity, provenance) = (self.identity(result), self.provenance(result));
+                self.observer.needs(result, identity, provenance)
             })
             .collect();
         match self.load(&needed) {
