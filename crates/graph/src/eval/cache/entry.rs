@@ -95,6 +95,16 @@ impl Entry {
         vec![key, key_with_files(key, &self.files)]
     }
 
+    /// Bytes that it takes in memory, about: what stands in it is small, and its texts
+    /// and numbers take some times as much there as in a file.
+    pub(super) fn weight(&self) -> usize {
+        /// Of the entry itself and its place under its keys.
+        const OVERHEAD: usize = 512;
+        /// Measured for reports of ten lines.
+        const TIMES: usize = 4;
+        OVERHEAD + TIMES * self.encode().len()
+    }
+
     /// The entry as bytes.
     pub(super) fn encode(&self) -> Vec<u8> {
         let mut out = Encoder::new();

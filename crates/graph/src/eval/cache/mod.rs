@@ -30,8 +30,9 @@ pub(super) use frame::FileKind;
 pub use maintain::{CacheFolder, FolderStats, GcReport, VerifyReport};
 pub(super) use writer::ToStore;
 
-/// Entries kept in memory; beyond it the older half is let go.
-const MAX_ENTRIES: usize = 1 << 16;
+/// Bytes of entries kept in memory, as [`Entry::weight`] has them; beyond it the older
+/// half is let go: those of some thousand edits are there.
+const MOST_ENTRY_BYTES: usize = 16 << 20;
 
 /// A two-level cache: small entries are kept, values live within a byte budget.
 #[derive(Debug)]
@@ -54,6 +55,36 @@ pub(super) struct Cache {
 struct Entries {
     by_key: BTreeMap<Digest, (u64, Arc<Entry>)>,
     clock: u64,
+    /// Of all that are there.
+    bytes: usize,
+}
+
+impl Entries {
+    fn insert(&mut self, key: Digest, entry: &Arc<Entry>) {
+        self.clock += 1;
+        self.bytes += entry.weight();
+        let before = self.by_key.insert(key, (self.clock, Arc::clone(entry)));
+        self.bytes -= before.map_or(0, |(_, entry)| entry.weight());
+        if self.bytes > MOST_ENTRY_BYTES {
+            self.forget_older();
+        }
+    }
+
+    /// Keeps the latest of them that fit into half of what there may be.
+    fn forget_older(&mut self) {
+        let times = self.by_key.values();
+        let mut times: Vec<(u64, usize)> =
+            times.map(|(time, entry)| (*time, entry.weight())).collect();
+        times.sort_unstable_by(|one, other| other.cmp(one));
+        let mut kept = 0;
+        let lost = times.iter().find(|(_, bytes)| {
+            kept += bytes;
+            kept > MOST_ENTRY_BYTES / 2
+        });
+        let lost = lost.map_or(0, |(time, _)| *time);
+        self.by_key.retain(|_, (time, _)| *time > lost);
+        self.bytes = self.by_key.values().map(|(_, entry)| entry.weight()).sum();
+    }
 }
 
 /// How much a cache holds and what was read from its folder.
@@ -135,14 +166,7 @@ impl Cache {
     }
 
     fn remember(&self, key: Digest, entry: &Arc<Entry>) {
-        let mut entries = lock(&self.entries);
-        entries.clock += 1;
-        let now = entries.clock;
-        entries.by_key.insert(key, (now, Arc::clone(entry)));
-        if entries.by_key.len() > MAX_ENTRIES {
-            let oldest = now - MAX_ENTRIES as u64 / 2;
-            entries.by_key.retain(|_, (time, _)| *time > oldest);
-        }
+        lock(&self.entries).insert(key, entry);
     }
 
     /// The value with that digest, from memory or disk; `None` if it was let go

@@ -340,3 +340,37 @@ fn meshes_with_the_same_faces_share_them() {
     let later = cache.shared(mesh(2.0));
     assert_eq!(Arc::strong_count(&topology(&later)), 2);
 }
+
+#[test]
+fn entries_take_so_many_bytes_and_the_latest_stay() {
+    let cache = Cache::new(1_000_000, None);
+    let entry = |number: u64| {
+        let value = Value::Text(format!("{number:01000}").into());
+        Arc::new(Entry {
+            results: vec![Known::new(&value)],
+            files: Vec::new(),
+            warnings: Vec::new(),
+            ms: 1.0,
+            bytes: 1000,
+        })
+    };
+    let key = |number: u64| Digest::of(&number.to_le_bytes());
+    for number in 0..20_000 {
+        cache.insert(key(number), &entry(number), &[]);
+        // Again under the same key: counted once.
+        cache.insert(key(number), &entry(number), &[]);
+    }
+    let entries = super::lock(&cache.entries);
+    let weight: usize = entries
+        .by_key
+        .values()
+        .map(|(_, entry)| entry.weight())
+        .sum();
+    assert_eq!(entries.bytes, weight);
+    assert!(weight <= super::MOST_ENTRY_BYTES && weight > super::MOST_ENTRY_BYTES / 3);
+    let count = entries.by_key.len() as u64;
+    drop(entries);
+    let is_known = |number: u64| cache.entry(key(number)).is_some();
+    assert!((20_000 - count..20_000).all(is_known));
+    assert!(!(0..20_000 - count).any(is_known));
+}
