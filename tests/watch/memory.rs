@@ -7,6 +7,7 @@ use tessgraph_graph::{Engine, Silent};
 
 use super::{Watch, write};
 use crate::support;
+use crate::support::page::Server;
 
 /// A graph whose grid takes about half a megabyte, and each edit another one.
 fn edited(edit: usize) -> String {
@@ -50,6 +51,40 @@ fn resident(process: u32) -> Option<u64> {
     std::io::Read::read_to_string(&mut std::fs::File::open(statm).ok()?, &mut pages).ok()?;
     let pages: u64 = pages.split_whitespace().nth(1)?.parse().ok()?;
     Some(pages * 4096)
+}
+
+#[test]
+#[ignore = "waits for half a minute; run by .ci/run"]
+fn memory_kept_for_edits_is_given_back_after_a_while() {
+    let grid = |height: f64| {
+        format!(
+            r#"Graph(version: 1, nodes: {{
+            "grid": Grid(size: [1, 1], cells: [1200, 1000]),
+            "moved": Transform(mesh: "grid", translate: (0, 0, {height:?})),
+        }}, outputs: {{"moved.stl": "moved"}})"#
+        )
+    };
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("g.ron");
+    write(&path, &grid(0.0));
+    let server = Server::start(folder.path(), "g.ron", &["--port", "0", "--no-cache"]);
+    let mut page = server.open();
+    for edit in 1..5 {
+        page.until("shown", |shown| {
+            shown["mesh"]["bounds"][1][2] == f64::from(edit - 1)
+        });
+        write(&path, &grid(f64::from(edit)));
+    }
+    let shown = page.until("shown", |shown| shown["mesh"]["bounds"][1][2] == 4.0);
+    let before = resident(server.child.id()).expect("it runs");
+    std::thread::sleep(std::time::Duration::from_secs(36));
+    let after = resident(server.child.id()).expect("it runs");
+    println!("{before} bytes after five edits, {after} half a minute later");
+    // The positions of an edit take 29 MB, and 14 more as they are drawn.
+    assert!(after + 40_000_000 < before, "{before}, then {after}");
+    // What is shown is still there.
+    let positions = server.buffer(&shown["mesh"]["positions"]);
+    assert_eq!(positions.len(), 12 * 1201 * 1001);
 }
 
 #[test]

@@ -43,6 +43,14 @@ pub fn keep_at_most(bytes: usize) {
     let _ = bytes;
 }
 
+/// Gives the freed memory that [`LargePages`] has kept back to the system: to be
+/// called when nothing will be made for a while. It goes on keeping what is freed
+/// from now on.
+pub fn give_back() {
+    #[cfg(target_os = "linux")]
+    pieces::give_back_kept();
+}
+
 #[cfg(target_os = "linux")]
 mod large {
     use super::{GlobalAlloc, LargePages, Layout, PAGE, System, pieces};
@@ -199,6 +207,10 @@ mod tests {
         assert_eq!(second.as_ptr(), place, "the same pages again");
         drop(second);
         assert_eq!(pieces::kept(), 20 * PAGE);
+        give_back();
+        assert_eq!(pieces::kept(), 0);
+        drop(vec![2u8; 20 * PAGE]);
+        assert_eq!(pieces::kept(), 20 * PAGE, "it goes on keeping");
         // What has no room in what is kept takes the place of as much of it: never
         // more is held than was in use at once.
         let third = vec![3u8; 15 * PAGE];

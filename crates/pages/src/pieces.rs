@@ -39,6 +39,11 @@ pub(crate) fn keep_at_most(bytes: usize) {
     });
 }
 
+/// Gives back all that is kept.
+pub(crate) fn give_back_kept() {
+    with(|pool| give_back_of(&mut pool.kept, usize::MAX));
+}
+
 /// A piece of at least `size` bytes, null if there is none to be had.
 ///
 /// One that was kept, if it fits. Otherwise as many bytes of those kept are
@@ -120,7 +125,7 @@ fn map_or_make_room(len: usize) -> *mut u8 {
     if !start.is_null() {
         return start;
     }
-    with(|pool| give_back_of(&mut pool.kept, usize::MAX));
+    give_back_kept();
     map(len)
 }
 

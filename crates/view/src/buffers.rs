@@ -201,22 +201,12 @@ impl Buffers {
                 blob.used = clock;
             }
         }
-        let mut older: Vec<(u64, Digest, usize)> = store
-            .blobs
-            .iter()
-            .filter(|(_, blob)| blob.used < clock)
-            .map(|(name, blob)| (blob.used, *name, blob.bytes))
-            .collect();
-        older.sort_by(|one, other| other.cmp(one));
-        let mut kept = 0;
-        for (_, name, bytes) in older {
-            kept += bytes;
-            if kept > self.budget {
-                store.blobs.remove(&name);
-            }
-        }
-        let Store { blobs, made, .. } = &mut *store;
-        made.retain(|_, name| blobs.contains_key(name));
+        store.keep_older(self.budget);
+    }
+
+    /// Lets go of all buffers that the latest message does not name.
+    pub fn let_go(&self) {
+        self.store().keep_older(0);
     }
 
     /// Bytes of all buffers that are there or may be asked for.
@@ -236,6 +226,24 @@ impl Buffers {
 }
 
 impl Store {
+    /// Keeps the latest of the buffers that the last message did not name, as many as
+    /// fit into so many bytes.
+    fn keep_older(&mut self, budget: usize) {
+        let Self { blobs, made, clock } = self;
+        let older = blobs.iter().filter(|(_, blob)| blob.used < *clock);
+        let older = older.map(|(name, blob)| (blob.used, *name, blob.bytes));
+        let mut older: Vec<(u64, Digest, usize)> = older.collect();
+        older.sort_by(|one, other| other.cmp(one));
+        let mut kept = 0;
+        for (_, name, bytes) in older {
+            kept += bytes;
+            if kept > budget {
+                blobs.remove(&name);
+            }
+        }
+        made.retain(|_, name| blobs.contains_key(name));
+    }
+
     fn keep(&mut self, name: Digest, bytes: usize, state: impl FnOnce() -> State) {
         // One more than the last message: not to be let go before the next.
         let used = self.clock + 1;
@@ -281,10 +289,15 @@ mod tests {
         assert!(buffers.get(names[0].0).is_none() && buffers.get(names[1].0).is_none());
         assert_eq!(&buffers.get(names[2].0).unwrap()[..4], &2u32.to_le_bytes());
         assert_eq!(buffers.get(names[3].0).unwrap().len(), 8);
+        assert_eq!(buffers.total(), 16);
         // A buffer that comes back is kept again without being made again.
         let source = source("test", &[Digest::of(&2u32.to_le_bytes())]).finish();
         let (back, _) = buffers.made(source, || panic!("it is there"));
         assert_eq!(back, names[2]);
+        buffers.sent(&named(&[back]));
+        buffers.let_go();
+        assert_eq!(buffers.total(), 8, "only what is named");
+        assert!(buffers.get(back.0).is_some());
     }
 
     #[test]

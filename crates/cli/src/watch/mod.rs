@@ -14,6 +14,7 @@ mod mailbox;
 mod notices;
 mod places;
 mod rerun;
+mod rest;
 pub(crate) mod resume;
 mod stamps;
 mod status;
@@ -30,6 +31,7 @@ use crate::commands::run::Control;
 use crate::interrupt::{self, INTERRUPTED};
 use debounce::{Debounce, Step};
 use places::Places;
+use rest::Rest;
 
 pub(crate) use cause::Cause;
 pub(crate) use mailbox::{Mailbox, Message, Post};
@@ -77,6 +79,9 @@ pub(crate) trait Work<'a> {
     /// tells of.
     fn look(&mut self) {}
 
+    /// Nobody has edited for a while: lets go of what is only kept for the next edit.
+    fn rest(&mut self) {}
+
     /// The system tells of no changes.
     fn deaf(&mut self, reason: &str);
 }
@@ -105,6 +110,7 @@ pub(crate) fn follow<'a, W: Work<'a>>(
             post: mailbox.post(),
             places: Places::new(watched, mailbox.post()),
             debounce: Debounce::default(),
+            rest: Rest::default(),
             touched: BTreeSet::new(),
             unlooked: BTreeSet::new(),
             running: None,
@@ -122,6 +128,7 @@ struct Watcher<'s, 'a, W: Work<'a>> {
     post: Post,
     places: Places<'a>,
     debounce: Debounce,
+    rest: Rest,
     /// Files that may have changed since the last run began.
     touched: BTreeSet<PathBuf>,
     /// Those of them that were touched just now.
@@ -167,6 +174,16 @@ impl<'s, 'a: 's, W: Work<'a>> Watcher<'s, 'a, W> {
                 self.work.look();
             }
             self.stop_if_stale();
+            self.rest_if_due();
+        }
+    }
+
+    /// Gives back memory when nothing has been at work for a while. Asked at every
+    /// look for changes, every few seconds.
+    fn rest_if_due(&mut self) {
+        if self.running.is_none() && self.rest.take(Instant::now()) {
+            self.work.rest();
+            tessgraph_pages::give_back();
         }
     }
 
@@ -199,6 +216,7 @@ impl<'s, 'a: 's, W: Work<'a>> Watcher<'s, 'a, W> {
             }
             Message::Ended => return self.ended(),
             Message::Asked => {
+                self.rest.disturb(Instant::now());
                 let wish = self.work.asked();
                 if wish.stop {
                     self.stop();
@@ -283,6 +301,7 @@ impl<'s, 'a: 's, W: Work<'a>> Watcher<'s, 'a, W> {
     /// Deals with what a run came to; an exit status if it was the last one.
     fn ended(&mut self) -> Option<u8> {
         let running = self.running.take()?;
+        self.rest.disturb(Instant::now());
         let ran = match running.thread.join() {
             Ok(ran) => ran,
             Err(panic) => std::panic::resume_unwind(panic),

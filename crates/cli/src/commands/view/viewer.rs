@@ -363,6 +363,10 @@ impl<'a> Work<'a> for Viewer<'a> {
     fn look(&mut self) {
         self.publish_study();
     }
+
+    fn rest(&mut self) {
+        self.buffers.let_go();
+    }
 }
 
 /// A value as `--set` takes it.
