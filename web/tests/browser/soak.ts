@@ -9,11 +9,11 @@ import { launch, LivePage, Workshop } from "./support.ts";
 const UPDATES = Number(process.env["SOAK"] ?? 2000);
 
 /** The browser compiles, and the server learns, until then; what is held then is compared with the end. */
-const WARM = UPDATES / 3;
+const WARM = Math.min(Math.floor(UPDATES / 2), 700);
 
 /**
- * What the server learns in one update: the keys and digests of six results, and what it
- * found out about them. It keeps them for 65 536 results; values have a budget of their own.
+ * What the server learns in one update: the keys and digests of five results, and two
+ * reports. It keeps 16 MB of them; values have a budget of their own, which is filled by and by.
  */
 const KNOWN_BYTES = 16_000;
 
