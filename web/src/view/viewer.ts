@@ -8,27 +8,24 @@ import {
   Frustum,
   Line3,
   Matrix4,
-  NearestFilter,
   Plane,
-  RGBAIntegerFormat,
   Scene,
   Sphere,
-  UnsignedIntType,
   Vector3,
-  WebGLRenderTarget,
   WebGLRenderer,
 } from "three";
 import type { MapName } from "../core/colour.ts";
 import type { ColourRange } from "../core/legend.ts";
 import type { Instances, Shown, ShownField, Vec3 } from "../core/protocol.ts";
 import { dot, type Section } from "../core/section.ts";
-import { Buffers, type BufferSource, type Format, type LoadTimes } from "./buffers.ts";
+import { Buffers, type BufferSource, type LoadTimes } from "./buffers.ts";
 import { type CameraState, ViewCamera } from "./camera.ts";
 import { boxCorners, samplePoints } from "./fit.ts";
 import { Cap } from "./cap.ts";
 import { Ground } from "./ground.ts";
-import { InstancedPositions, instanceBuffers } from "./instances.ts";
 import { Marks } from "./marks.ts";
+import { NUMBERS, Picker } from "./picker.ts";
+import { PreviewedPositions } from "./preview.ts";
 import { type EdgeMode, Surface, neededBuffers } from "./surface.ts";
 import { type ThemeName, VIEW_THEMES } from "./theme.ts";
 
@@ -57,11 +54,11 @@ export class Viewer {
   onMoved: () => void = () => {};
   private readonly renderer: WebGLRenderer;
   private readonly buffers: Buffers;
+  private readonly preview: PreviewedPositions;
   private readonly surface = new Surface();
   private readonly ground = new Ground();
   private readonly scene = new Scene();
-  private readonly pickScene = new Scene();
-  private readonly pickTarget: WebGLRenderTarget;
+  private readonly picker: Picker;
   private readonly timer = new Timer();
   private scheduled = false;
   private sequence = 0;
@@ -73,12 +70,6 @@ export class Viewer {
   private edgeMode: EdgeMode = "polygons";
   private section: Section | undefined;
   private fitted = false;
-  /** Buffers of the parts that a preview is drawn from; kept, for much of them stays. */
-  private parts: { digest: string; format: Format }[] = [];
-  private instanced: InstancedPositions | undefined;
-  /** The factor on heights that is wanted, and the one that positions were computed with. */
-  private previewed: number | undefined;
-  private computed: number | undefined;
   private samples: { digest: string; points: Vec3[] } | undefined;
 
   /** Throws where the browser gives no WebGL2. */
@@ -95,17 +86,11 @@ export class Viewer {
     canvas.setAttribute("aria-label", "The model; press ? for keys");
     host.append(canvas);
     this.buffers = new Buffers(this.renderer, source);
+    this.preview = new PreviewedPositions(this.renderer, this.buffers);
     this.camera = new ViewCamera(canvas, smooth);
     this.camera.pointUnder = (x, y) => this.hit(x, y)?.point;
-    this.pickTarget = new WebGLRenderTarget(1, 1, {
-      format: RGBAIntegerFormat,
-      type: UnsignedIntType,
-      internalFormat: "RGBA32UI",
-      minFilter: NearestFilter,
-      magFilter: NearestFilter,
-    });
     this.scene.add(this.ground.group, this.surface.group, this.cap.group, this.marks.group);
-    this.pickScene.add(this.surface.pickGroup);
+    this.picker = new Picker(this.renderer, this.surface.pickGroup);
     for (const event of ["control", "wake", "transitionstart"] as const) {
       this.camera.controls.addEventListener(event, () => this.invalidate());
     }
@@ -148,9 +133,9 @@ export class Viewer {
       this.onBuffer(digest, bytes);
     });
     if (sequence !== this.sequence) return false;
-    this.endPreview();
-    if (this.shown?.node !== shown.node) this.parts = [];
-    this.buffers.keep([...needed, ...this.parts]);
+    this.preview.end();
+    if (this.shown?.node !== shown.node) this.preview.drop();
+    this.buffers.keep([...needed, ...this.preview.parts]);
     this.shown = shown;
     this.field = field;
     this.surface.show(shown, field, this.buffers);
@@ -165,16 +150,9 @@ export class Viewer {
    * Makes the parts of what is shown ready to be drawn in its place. Throws where the
    * graphics card cannot. A newer call, or a newer result, overtakes it.
    */
-  async prepareInstances(instances: Instances): Promise<boolean> {
+  prepareInstances(instances: Instances): Promise<boolean> {
     const { shown } = this;
-    this.dropInstances();
-    // Older parts go when the next result is shown: until then it may need some of them.
-    this.parts = instanceBuffers(instances);
-    const { parts } = this;
-    await this.buffers.load(parts, () => {});
-    if (parts !== this.parts || shown !== this.shown || !shown?.mesh) return false;
-    this.instanced = new InstancedPositions(this.renderer, instances, this.buffers, shown.mesh.vertices);
-    return true;
+    return this.preview.prepare(instances, () => (shown === this.shown ? shown?.mesh?.vertices : undefined));
   }
 
   /**
@@ -182,36 +160,14 @@ export class Viewer {
    * says whether there are parts.
    */
   previewHeights(factor: number): boolean {
-    if (!this.instanced) return false;
-    this.previewed = factor;
+    if (!this.preview.ask(factor)) return false;
     this.invalidate();
     return true;
   }
 
-  /** Computes the positions of a preview, once for each frame that needs others. */
-  private computeHeights(): void {
-    const { instanced, previewed } = this;
-    if (!instanced || previewed === undefined || previewed === this.computed) return;
-    this.computed = previewed;
-    this.surface.usePositions(instanced.at(previewed));
-  }
-
   /** Whether what is drawn is made of parts. */
   get isPreview(): boolean {
-    return this.previewed !== undefined;
-  }
-
-  /** Lets the parts go. */
-  private dropInstances(): void {
-    this.endPreview();
-    this.parts = [];
-  }
-
-  private endPreview(): void {
-    this.previewed = undefined;
-    this.computed = undefined;
-    this.instanced?.dispose();
-    this.instanced = undefined;
+    return this.preview.isShown;
   }
 
   private place(mesh: NonNullable<Shown["mesh"]>): void {
@@ -229,7 +185,7 @@ export class Viewer {
   /** After the graphics card forgot everything: fetched again, by the same names. */
   private rebuild(): void {
     this.buffers.forget();
-    this.dropInstances();
+    this.preview.drop();
     if (this.shown) void this.show(this.shown, this.field);
   }
 
@@ -282,7 +238,7 @@ export class Viewer {
   hit(x: number, y: number): Hit | undefined {
     const [face = 0, panel = 0, vertex = 0, bits = 0] = this.ids(x, y, 1, 1);
     if (face === 0) return undefined;
-    return { face: face - 1, panel, vertex, point: this.unproject(x, y, bits) };
+    return { face: face - 1, panel, vertex, point: this.picker.place(this.camera.camera, x, y, bits) };
   }
 
   /** The panels seen within a rectangle of the canvas, and some of their places in absolute metres. */
@@ -293,46 +249,22 @@ export class Viewer {
     const places: Vec3[] = [];
     const every = Math.max(1, Math.floor((columns * rows) / MOST_PLACES));
     for (let i = 0; i < columns * rows; i += 1) {
-      const panel = ids[4 * i + 1] as number;
-      if (ids[4 * i] === 0) continue;
+      const panel = ids[NUMBERS * i + 1] as number;
+      if (ids[NUMBERS * i] === 0) continue;
       const isNew = !panels.has(panel);
       panels.add(panel);
       if (!isNew && i % every !== 0) continue;
       // Rows of a picture begin at the bottom.
       const [column, row] = [i % columns, rows - 1 - Math.floor(i / columns)];
-      places.push(this.fromScene(this.unproject(x + column, y + row, ids[4 * i + 3] as number)));
+      const bits = ids[NUMBERS * i + 3] as number;
+      places.push(this.fromScene(this.picker.place(this.camera.camera, x + column, y + row, bits)));
     }
     return { panels, places };
   }
 
-  /** The place of the scene at a point of the canvas, from the bits of its depth. */
-  private unproject(x: number, y: number, bits: number): Vector3 {
-    const { width, height } = this.canvas.getBoundingClientRect();
-    const depth = new Float32Array(new Uint32Array([bits]).buffer)[0] as number;
-    return new Vector3((2 * x) / width - 1, 1 - (2 * y) / height, 2 * depth - 1).unproject(this.camera.camera);
-  }
-
-  /** Four numbers for each pixel of a part of the picture: face + 1 or 0, panel, vertex, bits of the depth. */
   private ids(x: number, y: number, columns: number, rows: number): Uint32Array {
-    const { width, height } = this.canvas.getBoundingClientRect();
-    const { camera } = this.camera;
     this.camera.clip(this.sphere());
-    camera.setViewOffset(width, height, x, y, columns, rows);
-    this.pickTarget.setSize(columns, rows);
-    this.renderer.setRenderTarget(this.pickTarget);
-    const gl = this.renderer.getContext() as WebGL2RenderingContext;
-    // An integer target is cleared by its own call.
-    gl.clearBufferuiv(gl.COLOR, 0, new Uint32Array(4));
-    this.renderer.state.buffers.depth.setMask(true);
-    gl.clearBufferfv(gl.DEPTH, 0, new Float32Array([1]));
-    this.renderer.autoClear = false;
-    this.renderer.render(this.pickScene, camera);
-    this.renderer.autoClear = true;
-    const ids = new Uint32Array(4 * columns * rows);
-    gl.readPixels(0, 0, columns, rows, gl.RGBA_INTEGER, gl.UNSIGNED_INT, ids);
-    this.renderer.setRenderTarget(null);
-    camera.clearViewOffset();
-    return ids;
+    return this.picker.ids(this.camera.camera, x, y, columns, rows);
   }
 
   setColours(map: MapName, range: ColourRange): void {
@@ -462,12 +394,13 @@ export class Viewer {
     const sphere = box.getBoundingSphere(new Sphere());
     sphere.radius = Math.max(sphere.radius, 1e-3);
     // A preview reaches beyond the box of what was evaluated.
-    if (this.previewed !== undefined) sphere.radius += Math.abs(this.previewed) * (this.instanced?.reach ?? 0);
+    sphere.radius += this.preview.reach;
     return sphere;
   }
 
   private draw(): void {
-    this.computeHeights();
+    const positions = this.preview.next();
+    if (positions) this.surface.usePositions(positions);
     this.camera.clip(this.sphere());
     this.renderer.render(this.scene, this.camera.camera);
   }
