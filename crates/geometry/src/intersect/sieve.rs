@@ -47,15 +47,17 @@ impl<'a> Sieve<'a> {
 
     #[inline(always)]
     fn triangles(&mut self, faces: [u32; 2], places: [[u32; 3]; 2]) {
-        let doubtful = &mut self.doubtful;
         let shared = shared(&places);
         // The kind is looked up rather than branched on: it comes in no order.
         let kind = COUNT[shared[0]];
-        if kind > 2 || kind != COUNT[shared[1]] {
-            doubtful.push(faces);
+        let Some(four) = self
+            .triangles
+            .get_mut(kind)
+            .filter(|_| kind == COUNT[shared[1]])
+        else {
+            self.doubtful.push(faces);
             return;
-        }
-        let four = &mut self.triangles[kind];
+        };
         let first = shared.map(|corners| FIRST_OF_TRIANGLE[corners]);
         if four.add(faces, starting_at(first, places), self.positions) {
             let certain = match kind {
@@ -63,27 +65,27 @@ impl<'a> Sieve<'a> {
                 1 => four.part_at_first(),
                 _ => four.lean_apart(),
             };
-            four.keep(certain, doubtful);
+            four.keep(certain, &mut self.doubtful);
         }
     }
 
     #[inline(always)]
     fn quads(&mut self, faces: [u32; 2], places: [[u32; 4]; 2]) {
-        let doubtful = &mut self.doubtful;
+        let [alone, corner] = &mut self.quads;
         let shared = shared(&places);
-        let kind = COUNT[shared[0]];
-        if kind > 1 || kind != COUNT[shared[1]] {
-            doubtful.push(faces);
-            return;
-        }
-        let four = &mut self.quads[kind];
-        let first = shared.map(|corners| FIRST_OF_QUAD[corners]);
-        if four.add(faces, starting_at(first, places), self.positions) {
-            let certain = match kind {
-                0 => four.lie_apart(),
-                _ => four.part_at_first(),
-            };
-            four.keep(certain, doubtful);
+        match shared.map(|corners| COUNT[corners]) {
+            [0, 0] => {
+                if alone.add(faces, places, self.positions) {
+                    alone.keep(alone.lie_apart(), &mut self.doubtful);
+                }
+            }
+            [1, 1] => {
+                let first = shared.map(|corners| corners.trailing_zeros() as usize);
+                if corner.add(faces, starting_at(first, places), self.positions) {
+                    corner.keep(corner.part_at_first(), &mut self.doubtful);
+                }
+            }
+            _ => self.doubtful.push(faces),
         }
     }
 
@@ -105,9 +107,6 @@ const COUNT: [usize; 16] = [0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4];
 
 /// Of the corners that a triangle shares: the one, or the one beside two.
 const FIRST_OF_TRIANGLE: [usize; 16] = [0, 0, 1, 2, 2, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0];
-
-/// Of the corners that a quad shares: the one.
-const FIRST_OF_QUAD: [usize; 16] = [0, 0, 1, 0, 2, 0, 0, 0, 3, 0, 0, 0, 0, 0, 0, 0];
 
 /// Which corners of each of two faces the other has too, a bit for each; faces
 /// have at most four.
