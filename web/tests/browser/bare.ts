@@ -25,7 +25,8 @@ export class BarePage {
     const profile = mkdtempSync(join(tmpdir(), "tessgraph-browser-"));
     const options = ["--headless", "--remote-debugging-port=0", `--user-data-dir=${profile}`, "--no-first-run", "--window-size=1280,900", ...SOFTWARE_DRAWING];
     const browser = spawn(browserPath(), [...options, address], { stdio: "ignore" });
-    const port = await soon(() => readFileSync(join(profile, "DevToolsActivePort"), "utf8").split("\n")[0]);
+    // The file may be there before what it says: the whole first line is the port.
+    const port = await soon(() => /^(\d+)\n/.exec(readFileSync(join(profile, "DevToolsActivePort"), "utf8"))?.[1]);
     const pages = await soon(async () => {
       const list = (await (await fetch(`http://127.0.0.1:${port}/json`)).json()) as { type: string; webSocketDebuggerUrl: string }[];
       return list.filter(({ type }) => type === "page").map((page) => page.webSocketDebuggerUrl)[0];
