@@ -215,6 +215,23 @@ fn an_edit_loads_what_the_computed_nodes_take_and_nothing_else() {
     );
 }
 
+/// With a cache results are found by what they are; without one nobody reads all of a
+/// mesh only to name it.
+#[test]
+fn results_are_known_by_content_only_where_that_finds_them_again() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let kept = Run::outputs(GRAPH, folder.path());
+    let unkept = Run::with(&Engine::without_cache(), GRAPH, false);
+    for output in &kept.plan.outputs {
+        let result = output.result;
+        let (one, other) = (&kept.evaluation, &unkept.evaluation);
+        assert_eq!(one.identity(result), one.digest(result));
+        assert_eq!(other.identity(result), other.provenance(result));
+        assert_eq!(other.digest(result), one.digest(result));
+        assert_eq!(other.provenance(result), one.provenance(result));
+    }
+}
+
 /// A chain of fifty nodes.
 fn fifty_nodes(outputs: &str) -> String {
     let mut nodes = String::from("\"n0\": ReadMesh(path: \"cage.obj\"),\n");
